@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/protocol.hpp"
+
+namespace iwalk::client {
+
+struct PlayedFrame {
+    std::size_t frame = 0;  // index in the path
+    protocol::FrameDone done;
+};
+
+// Of the intervals from swap to swap, ms. Quantiles are interpolated linearly between the closest two values.
+struct FrameTimes {
+    double median = 0, p01 = 0, p99 = 0;
+};
+// Leaves out the first frame: the interval before it is not of this path. Nothing when no frame is left.
+std::optional<FrameTimes> frameTimes(const std::vector<PlayedFrame>& frames);
+
+// The JSON text of --report (docs/protocol.md, "The client's report").
+std::string reportText(const protocol::Welcome& welcome, const std::vector<PlayedFrame>& frames);
+
+}  // namespace iwalk::client

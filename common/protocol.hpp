@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/camera_path.hpp"
+#include "common/geometry.hpp"
+#include "common/result.hpp"
+
+// What client and server say to each other over TCP (docs/protocol.md). Little-endian, length-prefixed:
+//   u32 payload bytes, u16 type, u16 zero, payload
+// Strings are u16 length and UTF-8 bytes, arrays u32 count and items. A receiver checks the length against
+// its limit before it allocates anything.
+namespace iwalk::protocol {
+
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::size_t kHeaderBytes = 8;
+inline constexpr std::uint32_t kMaxClientPayload = 1024;        // client to server
+inline constexpr std::uint32_t kMaxServerPayload = 512u << 20;  // server to client (an image of a large tile)
+inline constexpr std::uint32_t kMaxTiles = 4096;
+inline constexpr std::uint32_t kMaxSettings = 4096;
+inline constexpr std::size_t kMaxStringBytes = 4096;
+inline constexpr std::int32_t kMaxTilePx = 32768;
+inline constexpr std::int32_t kMaxWallPx = 1 << 24;
+
+// Client to server, first: who I am. The server answers with Welcome or Failure. Sent again later it changes
+// `control` alone: false hands control over to the next in line, true asks for it again.
+struct Hello {
+    std::uint32_t version = kVersion;
+    bool control = true;  // wants to steer; false: only watches
+};
+
+enum FrameFlags : std::uint8_t {
+    kLockstep = 1,      // draw this camera, whatever else is waiting; without it the newest wins
+    kCaptureColor = 2,  // send the tiles of this frame as PNG
+    kCaptureDepth = 4,  // and their depth as EXR
+};
+
+// Client to server: the camera of a frame. Only the controller's count.
+struct CameraRequest {
+    std::uint64_t sequence = 0;  // the client's own number, from 1, returned with the frame
+    std::uint8_t flags = 0;      // FrameFlags
+    Camera camera;
+};
+
+struct TileInfo {
+    std::string name, host;
+    std::uint32_t rank = 0;
+    std::int32_t x = 0, y = 0, width = 0, height = 0;  // px of the wall, from its top left corner
+};
+
+struct NamedValue {
+    std::string name, value;
+};
+
+// Server to client, first.
+struct Welcome {
+    std::uint32_t version = kVersion;
+    std::string serverVersion;
+    std::uint64_t datasetTriangles = 0, datasetBytes = 0;
+    ModelBox bounds;  // model units
+    std::int32_t wallWidth = 0,
+                 wallHeight = 0;  // px, bezels included; 0 x 0: free screens, no common rectangle
+    std::vector<TileInfo> tiles;
+    std::vector<NamedValue> settings;  // every run-time setting
+};
+
+// Server to client: whether this client steers; sent after Welcome and whenever it changes.
+struct Control {
+    bool granted = false;
+};
+
+// What a tile did in a frame. Times in ms; bytes as read from disk.
+struct TileStats {
+    std::uint32_t tile = 0;
+    double visibilityMs = 0, adaptMs = 0, fetchWaitMs = 0, drawMs = 0, barrierWaitMs = 0;
+    std::uint64_t triangles = 0, ranges = 0;
+    double screenErrorPx = 0;
+    std::uint64_t fetchedBytes = 0, prefetchedBytes = 0, stalls = 0;
+    std::uint64_t badPages = 0;  // pages left out of this frame because they could not be read
+    std::uint64_t peakRssBytes = 0;
+};
+
+// Server to client: a frame is on the wall.
+struct FrameDone {
+    std::uint64_t sequence = 0;  // of the receiver's own request; 0: somebody else's
+    std::uint64_t frame = 0;     // the server's own count
+    double timeMs = 0;           // from the swap before to this one
+    std::vector<TileStats> tiles;
+};
+
+enum class ImageKind : std::uint8_t { png = 0, exr = 1 };
+
+// Server to client: a captured tile; comes after its FrameDone or before it.
+struct TileImage {
+    std::uint64_t sequence = 0;
+    std::uint32_t tile = 0;  // index into Welcome::tiles
+    ImageKind kind = ImageKind::png;
+    std::vector<std::byte> bytes;
+};
+
+// Either way: why the connection ends.
+struct Failure {
+    std::string reason;
+};
+
+using Message = std::variant<Hello, CameraRequest, Welcome, Control, FrameDone, TileImage, Failure>;
+
+// Header and payload, ready to send. Strings are cut to kMaxStringBytes and what is no text in them becomes
+// '?'; numbers that no receiver takes (NaN, over a limit) are our own bug.
+std::vector<std::byte> encode(const Message& message);
+
+struct Header {
+    std::uint32_t payloadBytes = 0;
+    std::uint16_t type = 0;
+};
+// Fails on an unknown type, a nonzero reserved field, or a payload over `limit`.
+Result<Header> decodeHeader(std::span<const std::byte, kHeaderBytes> bytes, std::uint32_t limit);
+// Fails on a payload that is too short, too long, or holds what cannot be (NaN, counts over the limits).
+Result<Message> decodePayload(const Header& header, std::span<const std::byte> payload);
+
+}  // namespace iwalk::protocol

@@ -1,0 +1,206 @@
+#include "common/settings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace iwalk {
+namespace {
+
+// A number that is the whole of `text`; nothing when it is anything else or out of T's range.
+template <class T, class... Base>
+std::optional<T> wholeNumber(std::string_view text, Base... base) {
+    T value{};
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value, base...);
+    if (error != std::errc() || stop != end) return std::nullopt;
+    return value;
+}
+
+struct ByteUnit {
+    char letter;
+    int shift;
+};
+constexpr std::array<ByteUnit, 4> kByteUnits{{{'T', 40}, {'G', 30}, {'M', 20}, {'k', 10}}};
+
+// The shortest text that parseBytes reads as exactly `bytes`.
+std::string exactBytes(std::uint64_t bytes) {
+    for (const ByteUnit& unit : kByteUnits) {
+        const std::uint64_t factor = std::uint64_t{1} << unit.shift;
+        if (bytes != 0 && bytes % factor == 0) return fmt::format("{}{}", bytes / factor, unit.letter);
+    }
+    return fmt::format("{}", bytes);
+}
+
+constexpr std::uint64_t kMinCacheBytes = 64u << 10;  // 512 is a forgotten M, not a cache
+constexpr std::uint32_t kMaxFetchThreads = 64;
+
+Result<void> parseCache(Settings& settings, const std::string& text) {
+    ASSIGN_OR_RETURN(const std::uint64_t bytes, parseBytes(text));
+    if (bytes < kMinCacheBytes) return fail("{} is less than 64k", text);
+    settings.cacheBytes = bytes;
+    return {};
+}
+
+Result<void> parseFetchThreads(Settings& settings, const std::string& text) {
+    const auto count = wholeNumber<std::uint32_t>(text);
+    if (!count || *count < 1 || *count > kMaxFetchThreads)
+        return fail("not a number from 1 to {}", kMaxFetchThreads);
+    settings.fetchThreads = *count;
+    return {};
+}
+
+Result<void> parseShading(Settings& settings, const std::string& text) {
+    if (text == "flat") return settings.shading = Shading::flat, Result<void>();
+    if (text == "smooth") return settings.shading = Shading::smooth, Result<void>();
+    if (text == "auto") return settings.shading = Shading::automatic, Result<void>();
+    return fail("choose flat, smooth or auto");
+}
+
+std::string shadingText(Shading shading) {
+    return shading == Shading::flat ? "flat" : shading == Shading::smooth ? "smooth" : "auto";
+}
+
+Result<void> parseRamp(Settings& settings, const std::string& text) {
+    if (text == "none") return settings.ramp = Ramp::none, Result<void>();
+    if (text == "height") return settings.ramp = Ramp::height, Result<void>();
+    if (text == "auto") return settings.ramp = Ramp::automatic, Result<void>();
+    return fail("choose height, none or auto");
+}
+
+std::string rampText(Ramp ramp) {
+    return ramp == Ramp::none ? "none" : ramp == Ramp::height ? "height" : "auto";
+}
+
+// The # may be left out: a shell takes it for a comment.
+Result<void> parseBackground(Settings& settings, const std::string& text) {
+    std::string_view digits = text;
+    if (digits.starts_with('#')) digits.remove_prefix(1);
+    const auto color = wholeNumber<std::uint32_t>(digits, 16);
+    if (!color || digits.size() != 6) return fail("not six hexadecimal digits, as in 20242a");
+    settings.background = *color;
+    return {};
+}
+
+Result<void> parseNear(Settings& settings, const std::string& text) {
+    const auto distance = wholeNumber<double>(text);
+    if (!distance || !std::isfinite(*distance) || *distance < 0) {
+        return fail("not a distance of 0 or more in model units");
+    }
+    settings.near = *distance;
+    return {};
+}
+
+// Everything there is to know about a setting; a new one is one more row here.
+struct Row {
+    SettingInfo info;
+    Result<void> (*parse)(Settings&, const std::string&);
+    std::string (*print)(const Settings&);
+};
+
+constexpr std::size_t kRows = 6;
+const std::array<Row, kRows>& rows() {
+    static const std::array<Row, kRows> table{{
+        {{"cache", "BYTES",
+          "memory of one server for pages, as in 512M or 2G, default 1G; more means fewer reads from disk, "
+          "and "
+          "less memory for everything else on the machine"},
+         parseCache,
+         [](const Settings& s) { return exactBytes(s.cacheBytes); }},
+        {{"fetch-threads", "N",
+          "threads of one server that read pages, 1 to 64, default 2; more hides a slow disk better and "
+          "takes "
+          "processor time from drawing"},
+         parseFetchThreads,
+         [](const Settings& s) { return fmt::format("{}", s.fetchThreads); }},
+        {{"shading", "flat|smooth|auto",
+          "normals of each triangle or of the input, default auto: smooth where the input has normals"},
+         parseShading,
+         [](const Settings& s) { return shadingText(s.shading); }},
+        {{"ramp", "height|none|auto",
+          "colour by height or the input's own colours, default auto: by height where the input has none"},
+         parseRamp,
+         [](const Settings& s) { return rampText(s.ramp); }},
+        {{"background", "RRGGBB", "colour where there is no surface, sRGB in hexadecimal, default 20242a"},
+         parseBackground,
+         [](const Settings& s) { return fmt::format("#{:06x}", s.background); }},
+        {{"near", "DISTANCE",
+          "distance of the near plane in model units, default 0: chosen from the model's size; larger gives "
+          "finer "
+          "depth and cuts away what is close"},
+         parseNear,
+         [](const Settings& s) { return fmt::format("{}", s.near); }},
+    }};
+    return table;
+}
+
+const Row* findRow(std::string_view name) {
+    const auto found =
+        std::find_if(rows().begin(), rows().end(), [&](const Row& row) { return row.info.name == name; });
+    return found == rows().end() ? nullptr : &*found;
+}
+
+std::string allNames() {
+    std::string names;
+    for (const Row& row : rows()) names += (names.empty() ? "" : ", ") + std::string(row.info.name);
+    return names;
+}
+
+}  // namespace
+
+std::span<const SettingInfo> settingTable() {
+    static const auto infos = [] {
+        std::array<SettingInfo, kRows> all{};
+        std::transform(rows().begin(), rows().end(), all.begin(), [](const Row& row) { return row.info; });
+        return all;
+    }();
+    return infos;
+}
+
+Result<void> setSetting(Settings& settings, const std::string& name, const std::string& text) {
+    const Row* row = findRow(name);
+    if (!row) return fail("there is no setting '{}'; the settings are {}", name, allNames());
+    const Result<void> parsed = row->parse(settings, text);
+    if (!parsed) return fail("{} = '{}': {}", name, text, parsed.error().message);
+    return {};
+}
+
+std::string settingText(const Settings& settings, const std::string& name) {
+    const Row* row = findRow(name);
+    CHECK(row != nullptr);
+    return row->print(settings);
+}
+
+Result<std::uint64_t> parseBytes(const std::string& text) {
+    std::string_view digits = text;
+    int shift = 0;
+    for (const ByteUnit& unit : kByteUnits) {
+        if (digits.ends_with(unit.letter) || (unit.letter == 'k' && digits.ends_with('K')))
+            shift = unit.shift;
+    }
+    if (shift != 0) digits.remove_suffix(1);
+
+    const auto count = wholeNumber<std::uint64_t>(digits);
+    if (!count) return fail("'{}' is not a number of bytes; write it as 1048576, 64k, 512M or 2G", text);
+    if (*count > std::numeric_limits<std::uint64_t>::max() >> shift)
+        return fail("'{}' is too many bytes", text);
+    return *count << shift;
+}
+
+std::string formatBytes(std::uint64_t bytes) {
+    if (bytes < 1024) return fmt::format("{} B", bytes);
+    double value = static_cast<double>(bytes);
+    std::size_t unit = 0;
+    constexpr std::array<const char*, 7> kNames{"B", "KB", "MB", "GB", "TB", "PB", "EB"};
+    for (; value >= 1024; ++unit) value /= 1024;
+    // 1023.97 would print as 1024 of the smaller unit.
+    if (value >= 1023.5) value /= 1024, ++unit;
+    std::string number = fmt::format("{:.{}f}", value, value < 99.95 ? 1 : 0);
+    if (number.ends_with(".0")) number.resize(number.size() - 2);
+    return fmt::format("{} {}", number, kNames[unit]);
+}
+
+}  // namespace iwalk

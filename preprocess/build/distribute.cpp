@@ -1,0 +1,97 @@
+#include "preprocess/build/distribute.hpp"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "common/dataset/page.hpp"
+#include "preprocess/build/grid.hpp"
+
+namespace iwalk {
+namespace {
+
+// For inputs without colours among others that have them: light grey, opaque.
+constexpr std::uint32_t kPlainColor = 0xffc8c8c8;
+
+// To the nearest integer, ties to even, for |value| < 2^51: adding pushes the fraction out. Much faster than
+// a call.
+double roundToInteger(double value) {
+    constexpr double kPush = 6755399441055744.0;  // 1.5 * 2^52
+    return (value + kPush) - kPush;
+}
+
+std::uint32_t faceNormal(const Triangle& triangle) {
+    const glm::dvec3 cross =
+        glm::cross(triangle[1].position - triangle[0].position, triangle[2].position - triangle[0].position);
+    const double length = glm::length(cross);
+    return packNormal(length > 0 && std::isfinite(length) ? glm::vec3(cross / length) : glm::vec3(0, 0, 1));
+}
+
+}  // namespace
+
+Distributor::Distributor(const Lattice& lattice, const RecordFormat& format, bool colors, bool normals,
+                         ChunkFile& file)
+    : lattice_(lattice),
+      format_(format),
+      colors_(colors),
+      normals_(normals),
+      stepsPerUnit_(std::ldexp(1.0, -lattice.stepExponent)),
+      writer_(file, kGridBins, format.words()) {}
+
+void Distributor::begin(const std::string& input, const ImportSummary& summary) {
+    input_ = input;
+    summary_ = summary;
+    stored_ = degenerate_ = 0;
+}
+
+// False when a corner is out of reach or the triangle too long.
+bool Distributor::quantise(const Triangle& triangle, TriangleRecord& record) const {
+    std::uint64_t spans = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const double steps = roundToInteger(triangle[corner].position[axis] * stepsPerUnit_);
+            if (!(std::abs(steps) <= static_cast<double>(kMaxSteps))) return false;
+            record.positions[corner][axis] =
+                static_cast<std::uint64_t>(static_cast<std::int64_t>(steps) - lattice_.rootCell[axis]);
+        }
+        const auto [low, high] =
+            std::minmax({record.positions[0][axis], record.positions[1][axis], record.positions[2][axis]});
+        spans |= high - low;
+    }
+    return spans <= kMaxTriangleSteps;
+}
+
+Error Distributor::misfit(const Triangle& triangle) const {
+    const glm::dvec3& p = triangle[0].position;
+    return fail(
+        "{}: triangle {} at ({:g}, {:g}, {:g}) is too far out or too long for lattice steps of 2^{}: "
+        "remove it, or give a coarser --step",
+        input_, stored_ + degenerate_, p.x, p.y, p.z, lattice_.stepExponent);
+}
+
+void Distributor::setAttributes(const Triangle& triangle, TriangleRecord& record) const {
+    const std::uint32_t flat = normals_ && !summary_.normals ? faceNormal(triangle) : 0;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        if (colors_) record.colors[corner] = summary_.colors ? triangle[corner].color : kPlainColor;
+        if (normals_) record.normals[corner] = summary_.normals ? packNormal(triangle[corner].normal) : flat;
+    }
+}
+
+Result<void> Distributor::add(std::span<const Triangle> triangles) {
+    TriangleRecord record;
+    for (const Triangle& triangle : triangles) {
+        if (!quantise(triangle, record)) return misfit(triangle);
+        const auto& [a, b, c] = record.positions;
+        if (a == b || b == c || c == a) {
+            ++degenerate_;
+            continue;
+        }
+        setAttributes(triangle, record);
+        const std::size_t bin = binOf(placeOf(a, b, c, lattice_.rootCellLog2), 0, lattice_.rootCellLog2);
+        ASSIGN_OR_RETURN(std::uint32_t* const place, writer_.append(bin));
+        format_.pack(record, place);
+        ++stored_;
+    }
+    return {};
+}
+
+}  // namespace iwalk

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "preprocess/build/record.hpp"
+#include "preprocess/build/spill.hpp"
+#include "preprocess/import/importer.hpp"
+
+namespace iwalk {
+
+// Puts the triangles of the inputs on the lattice and into the bins of the topmost grid.
+class Distributor {
+  public:
+    Distributor(const Lattice& lattice, const RecordFormat& format, bool colors, bool normals,
+                ChunkFile& file);
+
+    // The triangles that follow are of this input: its name for errors, and what it has.
+    void begin(const std::string& input, const ImportSummary& summary);
+    // Fails when a triangle does not fit the lattice, or the disk is full.
+    Result<void> add(std::span<const Triangle> triangles);
+    // Of the input that began last: stored triangles, and those with fewer than three distinct lattice
+    // positions.
+    std::uint64_t stored() const { return stored_; }
+    std::uint64_t degenerate() const { return degenerate_; }
+
+    Result<std::vector<Bin>> finish() { return writer_.finish(); }
+
+  private:
+    bool quantise(const Triangle& triangle, TriangleRecord& record) const;
+    Error misfit(const Triangle& triangle) const;
+    void setAttributes(const Triangle& triangle, TriangleRecord& record) const;
+
+    Lattice lattice_;
+    RecordFormat format_;
+    bool colors_, normals_;  // of the dataset
+    double stepsPerUnit_;
+    BinWriter writer_;
+    std::string input_;
+    ImportSummary summary_;
+    std::uint64_t stored_ = 0, degenerate_ = 0;
+};
+
+}  // namespace iwalk

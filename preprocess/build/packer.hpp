@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "preprocess/build/page_job.hpp"
+
+namespace iwalk {
+
+// Deals the triangles of the nodes, which come in depth-first order, out to pages. What a node has too much
+// for one page is cut evenly; small neighbours share a page. The pages do not depend on how nodes come in
+// slices.
+class Packer {
+  public:
+    // A page has at most `mostTriangles` (and kMaxPageTriangles): the leaf size, so that a leaf is one page.
+    Packer(const RecordFormat& format, std::size_t mostTriangles);
+
+    // A slice of a node that has `total` triangles in all. Only a node for several pages may come in several
+    // slices.
+    void add(Slice slice, std::uint64_t total);
+    // No more slices come.
+    void finish() { closeShared(); }
+    // The pages that are complete.
+    std::vector<PageJob> take() { return std::exchange(complete_, {}); }
+    // Copies what still waits for its page out of memory that is about to go.
+    void keep();
+
+  private:
+    void addLarge(Slice slice, std::uint64_t total);
+    void closeShared();
+    bool fits(const Slice& slice) const;
+
+    std::size_t words_, most_;
+    PageJob waiting_;  // shared by small nodes, or the next page of a large one
+    std::size_t waitingTriangles_ = 0;
+    LatticeBox waitingBox_;
+    std::uint64_t largeDone_ = 0;  // triangles of the large node under way
+    std::vector<PageJob> complete_;
+};
+
+}  // namespace iwalk

@@ -1,0 +1,94 @@
+#include "preprocess/build/survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace iwalk {
+namespace {
+
+constexpr std::size_t kSampleSize = 16384;
+constexpr int kBitsAcross = 24;
+constexpr int kMaxExponent = 1000;
+
+// The largest side of the box that leaves out the lowest and highest twentieth in each axis.
+double middleSide(const std::vector<glm::dvec3>& positions) {
+    double side = 0;
+    std::vector<double> values(positions.size());
+    for (std::size_t axis = 0; axis < 3 && !positions.empty(); ++axis) {
+        std::ranges::transform(positions, values.begin(), [&](const glm::dvec3& p) { return p[axis]; });
+        std::ranges::sort(values);
+        const std::size_t cut = values.size() / 20;
+        side = std::max(side, values[values.size() - 1 - cut] - values[cut]);
+    }
+    return side;
+}
+
+// The smallest e with 2^e >= value; value > 0.
+int ceilLog2(double value) {
+    int exponent = 0;
+    const double mantissa = std::frexp(std::min(value, std::numeric_limits<double>::max()), &exponent);
+    return mantissa > 0.5 ? exponent : exponent - 1;
+}
+
+int chooseStep(std::span<const ImportSummary> inputs, const Sample& sample, const ModelBox& bounds) {
+    double side = middleSide(sample.positions());
+    if (!(side > 0)) side = bounds.edge();
+    if (!(side > 0)) side = 1;
+    double precision = 0;  // the finest that is known
+    for (const ImportSummary& input : inputs) {
+        if (input.precision > 0 && (precision == 0 || input.precision < precision))
+            precision = input.precision;
+    }
+    int exponent = ceilLog2(side) - kBitsAcross;
+    if (precision > 0) exponent = std::max(exponent, ceilLog2(precision));
+    return std::clamp(exponent, -kMaxExponent, kMaxExponent);
+}
+
+// In steps; what lies out of reach is cut off here, and refused when a triangle has it as a corner.
+std::int64_t toLattice(double value, int stepExponent) {
+    const double limit = static_cast<double>(kMaxSteps);
+    return static_cast<std::int64_t>(
+        std::nearbyint(std::clamp(std::ldexp(value, -stepExponent), -limit, limit)));
+}
+
+}  // namespace
+
+void Sample::add(std::span<const glm::dvec3> positions) {
+    const std::uint64_t skip = (every_ - seen_ % every_) % every_;
+    for (std::uint64_t i = skip; i < positions.size(); i += every_) {
+        positions_.push_back(positions[i]);
+        if (positions_.size() < kSampleSize) continue;
+        // Keep those whose number in the whole sequence is a multiple of the new k.
+        for (std::size_t kept = 0; kept < kSampleSize / 2; ++kept) positions_[kept] = positions_[2 * kept];
+        positions_.resize(kSampleSize / 2);
+        // The one just added was an odd multiple of the old k, so the next of interest is one old k away.
+        i -= every_;
+        every_ *= 2;
+    }
+    seen_ += positions.size();
+}
+
+Result<Lattice> chooseLattice(std::span<const ImportSummary> inputs, const Sample& sample,
+                              std::optional<int> stepExponent) {
+    ModelBox bounds;
+    for (const ImportSummary& input : inputs) bounds.add(input.bounds);
+    if (bounds.empty()) return fail("the inputs have no vertices: there is nothing to build");
+    if (stepExponent && std::abs(*stepExponent) > kMaxExponent) {
+        return fail("--step 2^{} is out of range: give an exponent from -{} to {}", *stepExponent,
+                    kMaxExponent, kMaxExponent);
+    }
+
+    Lattice lattice;
+    lattice.stepExponent = stepExponent ? *stepExponent : chooseStep(inputs, sample, bounds);
+    std::uint64_t longest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        lattice.rootCell[axis] = toLattice(bounds.min[axis], lattice.stepExponent);
+        const std::int64_t top = toLattice(bounds.max[axis], lattice.stepExponent);
+        longest = std::max(longest, static_cast<std::uint64_t>(top - lattice.rootCell[axis]));
+    }
+    lattice.rootCellLog2 = static_cast<unsigned>(std::bit_width(longest));
+    return lattice;
+}
+
+}  // namespace iwalk

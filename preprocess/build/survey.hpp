@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "preprocess/build/lattice.hpp"
+#include "preprocess/import/importer.hpp"
+
+namespace iwalk {
+
+// Some thousands of positions, evenly over all that were added, the same for the same sequence: every k-th is
+// kept, and k doubles whenever there are too many.
+class Sample {
+  public:
+    void add(std::span<const glm::dvec3> positions);
+    const std::vector<glm::dvec3>& positions() const { return positions_; }
+
+  private:
+    std::vector<glm::dvec3> positions_;
+    std::uint64_t every_ = 1, seen_ = 0;
+};
+
+// The lattice for inputs that were scanned. The step is 2^(ceil(log2 R) - 24), where R is the largest side of
+// the box around the middle 90 % of the sample: 24 bits across the model, and one stray vertex does not make
+// it coarse. It is never finer than the finest input's own precision, rounded up to a power of two: that
+// would only cost bits. It must not follow from the first bounds alone, since it stays for good: models
+// inserted later share the lattice. Fails when `stepExponent` is given and does not suit.
+Result<Lattice> chooseLattice(std::span<const ImportSummary> inputs, const Sample& sample,
+                              std::optional<int> stepExponent);
+
+}  // namespace iwalk

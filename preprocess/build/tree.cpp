@@ -1,0 +1,70 @@
+#include "preprocess/build/tree.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace iwalk {
+namespace {
+
+void setBox(NodeRecord& node, const LatticeBox& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        node.boxMin[axis] = box.min[axis];
+        node.boxMax[axis] = box.max[axis];
+    }
+}
+
+}  // namespace
+
+void setOwnBox(NodeRecord& node, const LatticeBox& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        node.ownMin[axis] = box.min[axis];
+        node.ownMax[axis] = box.max[axis];
+    }
+}
+
+std::uint32_t Tree::add(std::uint32_t parent, std::uint8_t octant, unsigned depth) {
+    NodeRecord record{};
+    record.depth = static_cast<std::uint8_t>(depth);
+    setOwnBox(record, LatticeBox{});
+    nodes_.push_back({record, parent, octant});
+    return static_cast<std::uint32_t>(nodes_.size() - 1);
+}
+
+std::vector<NodeRecord> Tree::finish() {
+    // Depth by depth; within one by the parents' places, then by octant: that is a row of children for each
+    // parent.
+    std::vector<std::uint32_t> order(nodes_.size()), place(nodes_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto depthOf = [&](std::uint32_t node) { return nodes_[node].record.depth; };
+    std::ranges::stable_sort(order, {}, depthOf);
+    for (auto begin = order.begin(); begin != order.end();) {
+        const auto end =
+            std::find_if(begin, order.end(), [&](std::uint32_t n) { return depthOf(n) != depthOf(*begin); });
+        std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
+            const std::uint32_t parentA = nodes_[a].parent, parentB = nodes_[b].parent;
+            if (parentA != parentB) return place[parentA] < place[parentB];
+            return nodes_[a].octant < nodes_[b].octant;
+        });
+        for (auto i = begin; i != end; ++i) place[*i] = static_cast<std::uint32_t>(i - order.begin());
+        begin = end;
+    }
+
+    std::vector<NodeRecord> records;
+    records.reserve(nodes_.size());
+    for (const std::uint32_t node : order) records.push_back(nodes_[node].record);
+    // Children come later than their parents, so backwards every box is complete before it is passed on.
+    for (NodeRecord& record : records) setBox(record, Hierarchy::ownBox(record));
+    for (std::size_t i = order.size(); i-- > 1;) {
+        const Growing& node = nodes_[order[i]];
+        NodeRecord& parent = records[place[node.parent]];
+        LatticeBox box = Hierarchy::box(parent);
+        box.add(Hierarchy::box(records[i]));
+        setBox(parent, box);
+        parent.childMask = static_cast<std::uint8_t>(parent.childMask | 1u << node.octant);
+        parent.firstChild = static_cast<std::uint32_t>(i);
+    }
+    nodes_.clear();
+    return records;
+}
+
+}  // namespace iwalk

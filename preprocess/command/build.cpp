@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "common/settings.hpp"
+#include "preprocess/command/commands.hpp"
+#include "preprocess/command/progress_bar.hpp"
+
+namespace iwalk {
+namespace {
+
+std::uint64_t peakMemory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+void printSummary(const Manifest& manifest, double seconds) {
+    std::uint64_t bytes = manifest.hierarchy.bytes;
+    for (const DatasetFile& file : manifest.pageFiles) bytes += file.bytes;
+    const double triangles = static_cast<double>(manifest.triangles);
+    fmt::print("{} triangles in {:.1f} s: {:.2f} Mtri/s, {:.2f} bytes/triangle ({}), peak memory {}\n",
+               manifest.triangles, seconds, triangles / seconds / 1e6, static_cast<double>(bytes) / triangles,
+               formatBytes(bytes), formatBytes(peakMemory()));
+    std::uint64_t nonFinite = 0, degenerate = 0;
+    for (const Provenance& input : manifest.provenance) {
+        nonFinite += input.droppedNonFinite;
+        degenerate += input.droppedDegenerate;
+    }
+    if (nonFinite + degenerate > 0) {
+        fmt::print(
+            "left out: {} triangles with a corner that is not finite, {} with fewer than three distinct "
+            "positions\n",
+            nonFinite, degenerate);
+    }
+}
+
+}  // namespace
+
+Result<void> runBuild(const BuildOptions& options) {
+    const auto began = std::chrono::steady_clock::now();
+    Result<Manifest> manifest = [&] {
+        ProgressBar progress;
+        return buildDataset(options, progress);
+    }();
+    if (!manifest) return manifest.error();
+    printSummary(*manifest, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+    return {};
+}
+
+}  // namespace iwalk

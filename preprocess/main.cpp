@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "common/settings.hpp"
+#include "common/version.hpp"
+#include "preprocess/command/commands.hpp"
+
+namespace {
+
+using namespace iwalk;
+
+constexpr int kSuccess = 0, kFailure = 1, kUsage = 2;
+
+int report(const Result<void>& result) {
+    if (result) return kSuccess;
+    fmt::print(stderr, "iwalk-preprocess: {}\n", result.error().message);
+    return kFailure;
+}
+
+// Everything that can be said on the command line.
+struct Arguments {
+    BuildOptions build;
+    std::string memory = "512M";
+    int step = 0;
+    std::string dataset;
+    bool json = false;
+};
+
+CLI::App* addBuild(CLI::App& app, Arguments& arguments) {
+    CLI::App* command = app.add_subcommand("build", "Build a dataset from models (.ply, .obj)");
+    command->add_option("input", arguments.build.inputs, "Models to read")->required()->type_name("INPUT");
+    command
+        ->add_option("-o,--output", arguments.build.output,
+                     "Directory of the dataset; made when it is not there, replaced when it is a dataset")
+        ->required()
+        ->type_name("DATASET");
+    command
+        ->add_option(
+            "--memory", arguments.memory,
+            "Peak memory of this program, in bytes with suffix k, M or G; at least 64M. More is faster "
+            "where the model is larger than this")
+        ->type_name("BYTES")
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--leaf-triangles", arguments.build.leafTriangles,
+            "A node of the octree with more triangles is split (16 to 65536). Raised: fewer and larger "
+            "reads, smaller hierarchy, coarser choice of what to read")
+        ->type_name("N")
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--step", arguments.step,
+            "The lattice step is 2^E model units. Default: chosen from the models' precision and size. "
+            "It cannot change once the dataset is built")
+        ->type_name("E");
+    command->add_option("--threads", arguments.build.threads, "Threads; 0: as many as there are cores")
+        ->type_name("N")
+        ->capture_default_str();
+    return command;
+}
+
+CLI::App* addReader(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
+    CLI::App* command = app.add_subcommand(name, help);
+    command->add_option("dataset", arguments.dataset, "Directory of the dataset")
+        ->required()
+        ->type_name("DATASET");
+    command->add_flag("--json", arguments.json, "Print JSON");
+    return command;
+}
+
+int usage(const std::string& message) {
+    fmt::print(stderr, "iwalk-preprocess: {} (see --help)\n", message);
+    return kUsage;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Turns triangle models into datasets that iwalk-server draws.", "iwalk-preprocess");
+    app.set_version_flag("--version", std::string("iwalk-preprocess ") + kVersion);
+    app.require_subcommand(1);
+    Arguments arguments;
+    const CLI::App* build = addBuild(app, arguments);
+    const CLI::App* info = addReader(app, arguments, "info", "Say what a dataset has");
+    const CLI::App* verify = addReader(app, arguments, "verify", "Read all of a dataset and check it");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        return app.exit(success);
+    } catch (const CLI::ParseError& error) {
+        return usage(error.what());
+    }
+
+    if (info->parsed()) return report(runInfo(arguments.dataset, arguments.json));
+    if (verify->parsed()) return report(runVerify(arguments.dataset, arguments.json));
+    const Result<std::uint64_t> memory = parseBytes(arguments.memory);
+    if (!memory) return usage("--memory: " + memory.error().message);
+    arguments.build.memoryBytes = *memory;
+    if (build->count("--step") > 0) arguments.build.stepExponent = arguments.step;
+    return report(runBuild(arguments.build));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& exception) {  // out of memory, for instance
+        fmt::print(stderr, "iwalk-preprocess: {}\n", exception.what());
+        return kFailure;
+    }
+}

@@ -1,0 +1,351 @@
+// Tiles of one screen come out pixel by pixel as one big render would: all tiles use the screen's own projection, with
+// window positions snapped in the vertex shader, and a viewport that begins whole pixels away (docs/architecture.md).
+
+#include "server/draw/renderer.hpp"
+
+#include <epoxy/gl.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+
+#include "server/draw/shaders.hpp"
+
+namespace iwalk {
+namespace {
+
+// One GL buffer at the most; offsets into it must fit in 31 bits.
+constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
+constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
+constexpr int kMaxWindow = 16384;  // px: GL 4.5's least largest viewport
+
+// A part of a tile, and the square of the screen that clip space spans while it is drawn. The square's edge is a power of
+// two, so that transforms are exact.
+struct Window {
+    int x = 0, y = 0, edge = 0;  // px of the screen
+    PixelRect part;              // px of the screen, within the tile
+};
+
+struct Span {
+    int window, from, to;  // px of the screen
+};
+
+// Screens wider than the largest viewport are drawn in strips of half that size, each with a window around it. Strips and
+// windows belong to the screen, not to the tile: a pixel is drawn through the same window however the screen is cut.
+std::vector<Span> spansOf(int screen, int edge, int from, int to) {
+    if (screen <= edge) return {{0, from, to}};
+    const int strip = edge / 2;
+    std::vector<Span> spans;
+    for (int start = from / strip * strip; start < to; start += strip)
+        spans.push_back({start - strip / 2, std::max(from, start), std::min(to, start + strip)});
+    return spans;
+}
+
+std::vector<Window> windowsFor(int screenWidth, int screenHeight, const PixelRect& tile) {
+    const int longest = std::max(screenWidth, screenHeight);
+    const int edge = std::min(kMaxWindow, static_cast<int>(std::bit_ceil(static_cast<unsigned>(longest))));
+    std::vector<Window> windows;
+    for (const Span& y : spansOf(screenHeight, edge, tile.y, tile.y + tile.height))
+        for (const Span& x : spansOf(screenWidth, edge, tile.x, tile.x + tile.width))
+            windows.push_back({x.window, y.window, edge, {x.from, y.from, x.to - x.from, y.to - y.from}});
+    return windows;
+}
+
+class GlRenderer : public Renderer {
+  public:
+    GlRenderer(int width, int height, const SceneLook& look) : width_(width), height_(height), look_(look) {}
+    ~GlRenderer() override;
+    Result<void> prepare();
+
+    Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override;
+    void beginFrame(const TileView& view) override;
+    void draw(const ResidentPage& page, const PageRecord& record, std::span<const IndexRun> runs) override;
+    void finish() override;
+    ColorImage readColor() override;
+    DepthImage readDepth() override;
+
+  private:
+    Result<void> makeFramebuffers();
+    void addDepthTarget();
+    std::uint32_t addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
+                          const glm::dvec3& origin);
+    void useVisibilityProgram(bool wide);
+    void useWindow(const Window& window);
+    void shade();
+    std::uint32_t shadingVariant() const;
+    void useShadingProgram();
+
+    const int width_, height_;
+    const SceneLook look_;
+    GLuint visibleFramebuffer_ = 0, visible_ = 0, depthBuffer_ = 0;
+    GLuint framebuffer_ = 0, color_ = 0;
+    GLuint captureFramebuffer_ = 0, eyeDepth_ = 0;  // with the same colour; made when depth is first wanted
+    GLuint shaded_ = 0;                             // one of the two
+    std::array<GLuint, 2> visibilityPrograms_{}, vertexArrays_{};  // narrow, wide
+    GLuint emptyArray_ = 0;
+    std::array<GLuint, kShadeVariants> shadingPrograms_{};
+    std::vector<GLuint> banks_;
+    GLuint pagesBuffer_ = 0;
+    std::vector<ShadedPage> slots_;  // pages drawn since the last shading
+    TileView view_;
+    std::vector<Window> windows_;  // one, unless the screen is wider than the largest viewport
+    GLuint used_ = 0;  // the visibility program that has this frame's uniforms and is in use
+};
+
+GLuint makeTexture(GLenum format, int width, int height) {
+    GLuint texture = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+    glTextureStorage2D(texture, 1, format, width, height);
+    return texture;
+}
+
+GLuint makeVertexArray(GLint components) {
+    GLuint array = 0;
+    glCreateVertexArrays(1, &array);
+    glEnableVertexArrayAttrib(array, 0);
+    glVertexArrayAttribIFormat(array, 0, components, GL_UNSIGNED_INT, 0);
+    glVertexArrayAttribBinding(array, 0, 0);
+    return array;
+}
+
+GlRenderer::~GlRenderer() {
+    for (const GLuint program : visibilityPrograms_) glDeleteProgram(program);
+    for (const GLuint program : shadingPrograms_) glDeleteProgram(program);
+    for (const GLuint array : {vertexArrays_[0], vertexArrays_[1], emptyArray_}) glDeleteVertexArrays(1, &array);
+    for (const GLuint texture : {visible_, depthBuffer_, color_, eyeDepth_}) glDeleteTextures(1, &texture);
+    for (const GLuint framebuffer : {visibleFramebuffer_, framebuffer_, captureFramebuffer_}) glDeleteFramebuffers(1, &framebuffer);
+    glDeleteBuffers(1, &pagesBuffer_);
+    glDeleteBuffers(static_cast<GLsizei>(banks_.size()), banks_.data());
+}
+
+Result<void> GlRenderer::prepare() {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    if (width_ > largest || height_ > largest)
+        return fail("a tile of {}x{} px is larger than this GL draws ({} px): cut the wall into smaller tiles", width_,
+                    height_, largest);
+    RETURN_IF_ERROR(makeFramebuffers());
+    for (const bool wide : {false, true}) {
+        ASSIGN_OR_RETURN(visibilityPrograms_[wide], compileVisibilityProgram(wide));
+        vertexArrays_[wide] = makeVertexArray(wide ? 3 : 2);
+    }
+    glCreateVertexArrays(1, &emptyArray_);
+    glCreateBuffers(1, &pagesBuffer_);
+    glNamedBufferStorage(pagesBuffer_, kMaxSlots * sizeof(ShadedPage), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glDepthFunc(GL_GREATER);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    return {};
+}
+
+Result<void> GlRenderer::makeFramebuffers() {
+    visible_ = makeTexture(GL_R32UI, width_, height_);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTextureParameteri(visible_, filter, GL_NEAREST);  // integers cannot be filtered: without this nothing is read
+    depthBuffer_ = makeTexture(GL_DEPTH_COMPONENT32F, width_, height_);
+    color_ = makeTexture(GL_RGBA8, width_, height_);
+    glCreateFramebuffers(1, &visibleFramebuffer_);
+    glNamedFramebufferTexture(visibleFramebuffer_, GL_COLOR_ATTACHMENT0, visible_, 0);
+    glNamedFramebufferTexture(visibleFramebuffer_, GL_DEPTH_ATTACHMENT, depthBuffer_, 0);
+    glCreateFramebuffers(1, &framebuffer_);
+    glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, color_, 0);
+    for (const GLuint framebuffer : {visibleFramebuffer_, framebuffer_})
+        if (glCheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+            return fail("this GL cannot draw {}x{} px with 32-bit float depth", width_, height_);
+    return {};
+}
+
+Result<std::vector<std::span<std::byte>>> GlRenderer::lendArena(std::uint64_t bytes) {
+    GLint64 largest = 0;  // that the second pass can read as one
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
+    const std::uint64_t bank = std::min(kMaxBankBytes, static_cast<std::uint64_t>(largest)) / kArenaAlignment *
+                               kArenaAlignment;
+    constexpr GLbitfield kAccess = GL_MAP_WRITE_BIT | GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+    std::vector<std::span<std::byte>> memory;
+    bytes = std::max(bytes, kArenaAlignment);
+    for (std::uint64_t left = (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment; left > 0;) {
+        const std::uint64_t size = std::min(left, bank);
+        GLuint buffer = 0;
+        glCreateBuffers(1, &buffer);
+        banks_.push_back(buffer);
+        glNamedBufferStorage(buffer, static_cast<GLsizeiptr>(size), nullptr, kAccess);
+        void* mapped = glMapNamedBufferRange(buffer, 0, static_cast<GLsizeiptr>(size), kAccess);
+        if (!mapped) return fail("the GL has no {} for the geometry cache: lower --cache", formatBytes(bytes));
+        memory.emplace_back(static_cast<std::byte*>(mapped), size);
+        left -= size;
+    }
+    return memory;
+}
+
+void GlRenderer::beginFrame(const TileView& view) {
+    view_ = view;
+    windows_ = windowsFor(view.screenWidth, view.screenHeight, view.tile);
+    used_ = 0;
+    slots_.clear();
+    if (view.captureDepth && captureFramebuffer_ == 0) addDepthTarget();
+    shaded_ = view.captureDepth ? captureFramebuffer_ : framebuffer_;
+
+    const auto channel = [&](int shift) { return static_cast<float>((look_.background >> shift) & 255) / 255; };
+    const float background[] = {channel(16), channel(8), channel(0), 1};
+    const float nothing[] = {0, 0, 0, 0};
+    const GLuint nobody[] = {0, 0, 0, 0};
+    glClearNamedFramebufferfv(shaded_, GL_COLOR, 0, background);
+    if (view.captureDepth) glClearNamedFramebufferfv(shaded_, GL_COLOR, 1, nothing);
+    glClearNamedFramebufferuiv(visibleFramebuffer_, GL_COLOR, 0, nobody);
+    glClearNamedFramebufferfv(visibleFramebuffer_, GL_DEPTH, 0, nothing);
+}
+
+// Frames whose depth is wanted have a framebuffer of their own.
+void GlRenderer::addDepthTarget() {
+    eyeDepth_ = makeTexture(GL_R32F, width_, height_);
+    glCreateFramebuffers(1, &captureFramebuffer_);
+    glNamedFramebufferTexture(captureFramebuffer_, GL_COLOR_ATTACHMENT0, color_, 0);
+    glNamedFramebufferTexture(captureFramebuffer_, GL_COLOR_ATTACHMENT1, eyeDepth_, 0);
+    const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glNamedFramebufferDrawBuffers(captureFramebuffer_, 2, targets);
+}
+
+void GlRenderer::useVisibilityProgram(bool wide) {
+    if (used_ == visibilityPrograms_[wide]) return;
+    used_ = visibilityPrograms_[wide];
+    glBindFramebuffer(GL_FRAMEBUFFER, visibleFramebuffer_);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_SCISSOR_TEST);
+    glBindVertexArray(vertexArrays_[wide]);
+    glUseProgram(used_);
+    glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
+    glUniform1f(kNear, static_cast<float>(view_.near));
+    useWindow(windows_[0]);
+}
+
+void GlRenderer::useWindow(const Window& window) {
+    const float half = static_cast<float>(window.edge) / 2;
+    glViewport(window.x - view_.tile.x, window.y - view_.tile.y, window.edge, window.edge);
+    glScissor(window.part.x - view_.tile.x, window.part.y - view_.tile.y, window.part.width, window.part.height);
+    glUniform3f(kWindow, static_cast<float>(window.x) + half, static_cast<float>(window.y) + half, half);
+}
+
+void GlRenderer::draw(const ResidentPage& page, const PageRecord& record, std::span<const IndexRun> runs) {
+    if (slots_.size() == kMaxSlots) shade();
+    const bool wide = record.flags & kPageWide;
+    const PageLayout layout = pageLayout(record);
+    const glm::dvec3 origin = view_.eye.to(page.table->origin);
+    const std::uint32_t slot = addSlot(page, record, layout, origin);
+
+    useVisibilityProgram(wide);
+    const GLuint buffer = banks_[page.place.bank];
+    const auto offset = static_cast<GLintptr>(page.place.offset);
+    glVertexArrayVertexBuffer(vertexArrays_[wide], 0, buffer, offset + layout.positions,
+                              static_cast<GLsizei>(layout.positionStride));
+    glVertexArrayElementBuffer(vertexArrays_[wide], buffer);
+    glUniform3d(kPageOrigin, origin.x, origin.y, origin.z);
+    for (const Window& window : windows_) {
+        if (windows_.size() > 1) useWindow(window);
+        for (const IndexRun& run : runs) {
+            glUniform1ui(kFirstId, (slot + 1) << 16 | run.firstIndex / 3);
+            const std::uintptr_t at = static_cast<std::uintptr_t>(offset) + layout.indices + 2 * run.firstIndex;
+            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(run.indexCount), GL_UNSIGNED_SHORT,
+                           reinterpret_cast<const void*>(at));
+        }
+    }
+}
+
+std::uint32_t GlRenderer::addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
+                                  const glm::dvec3& origin) {
+    const auto word = [&](std::uint32_t stream) { return static_cast<std::uint32_t>((page.place.offset + stream) / 4); };
+    slots_.push_back({{origin.x, origin.y, origin.z, 0},
+                      {word(layout.positions), word(layout.colors), word(layout.normals), word(layout.indices)},
+                      page.place.bank,
+                      record.flags & kPageWide ? 1u : 0u,
+                      {}});
+    return static_cast<std::uint32_t>(slots_.size() - 1);
+}
+
+void GlRenderer::finish() {
+    shade();
+    glFinish();
+}
+
+// Every pixel whose nearest surface was drawn since the last time gets its colour, while the pages are still there. A
+// pixel that a later batch covers is shaded again then.
+void GlRenderer::shade() {
+    if (slots_.empty()) return;
+    glNamedBufferSubData(pagesBuffer_, 0, static_cast<GLsizeiptr>(slots_.size() * sizeof(ShadedPage)), slots_.data());
+    glBindFramebuffer(GL_FRAMEBUFFER, shaded_);
+    glViewport(0, 0, width_, height_);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_SCISSOR_TEST);
+    glBindVertexArray(emptyArray_);
+    glBindTextureUnit(0, visible_);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kPagesBinding, pagesBuffer_);
+    useShadingProgram();
+    std::vector<bool> used(banks_.size());
+    for (const ShadedPage& page : slots_) used[page.bank] = true;
+    for (std::uint32_t bank = 0; bank < banks_.size(); ++bank) {
+        if (!used[bank]) continue;
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kWordsBinding, banks_[bank]);
+        glUniform1ui(kBank, bank);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    const GLuint nobody[] = {0, 0, 0, 0};
+    glClearNamedFramebufferuiv(visibleFramebuffer_, GL_COLOR, 0, nobody);
+    slots_.clear();
+    used_ = 0;
+}
+
+std::uint32_t GlRenderer::shadingVariant() const {
+    std::uint32_t variant = 0;
+    if (view_.captureDepth) variant |= kShadeDepth;
+    if (look_.normals && look_.shading != Shading::flat) variant |= kShadeSmooth;
+    if (look_.ramp == Ramp::height || (look_.ramp == Ramp::automatic && !look_.colors)) return variant | kShadeRamp;
+    if (look_.colors) variant |= kShadeColors;
+    return variant;
+}
+
+void GlRenderer::useShadingProgram() {
+    const std::uint32_t variant = shadingVariant();
+    if (shadingPrograms_[variant] == 0) {
+        Result<std::uint32_t> program = compileShadingProgram(variant);
+        if (!program) detail::checkFailed(__FILE__, __LINE__, program.error().message);
+        shadingPrograms_[variant] = *program;
+    }
+    glUseProgram(shadingPrograms_[variant]);
+    glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
+    glUniformMatrix3fv(kToDirection, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toDirection)));
+    glUniform1f(kNear, static_cast<float>(view_.near));
+    glUniform2f(kTileOrigin, static_cast<float>(view_.tile.x), static_cast<float>(view_.tile.y));
+    if (variant & kShadeDepth) glUniform1f(kStepSize, static_cast<float>(std::ldexp(1.0, look_.stepExponent)));
+    if (variant & kShadeRamp) {
+        const double low = view_.eye.to(look_.bounds.min).z, high = view_.eye.to(look_.bounds.max).z;
+        glUniform2f(kRamp, static_cast<float>(low), static_cast<float>(1 / std::max(1.0, high - low)));
+    }
+}
+
+ColorImage GlRenderer::readColor() {
+    ColorImage image(width_, height_, 3);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());
+    return image;
+}
+
+DepthImage GlRenderer::readDepth() {
+    CHECK(view_.captureDepth);
+    DepthImage image(width_, height_, 1);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, captureFramebuffer_);
+    glReadBuffer(GL_COLOR_ATTACHMENT1);
+    glReadPixels(0, 0, width_, height_, GL_RED, GL_FLOAT, image.pixels.data());
+    return image;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, const SceneLook& look) {
+    auto renderer = std::make_unique<GlRenderer>(width, height, look);
+    RETURN_IF_ERROR(renderer->prepare());
+    return std::unique_ptr<Renderer>(std::move(renderer));
+}
+
+}  // namespace iwalk

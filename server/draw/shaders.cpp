@@ -1,0 +1,230 @@
+#include "server/draw/shaders.hpp"
+
+#include <epoxy/gl.h>
+
+#include <string>
+
+namespace iwalk {
+namespace {
+
+// Position streams, as in common/dataset/page.hpp.
+const char* const kOffsets = R"(
+uvec3 unpackNarrow(uvec2 p) {
+    return uvec3(p.x & 0x1fffffu, (p.x >> 21) | ((p.y & 0x3ffu) << 11), (p.y >> 10) & 0x1fffffu);
+}
+)";
+
+// Integer page origin (from the eye's cell, in double) plus integer offset, then one conversion to float: a vertex that
+// two pages share has one eye-space position, bit for bit.
+//
+// The perspective division is done here, so that window positions can be snapped to 1/256 px of the screen, the grid of
+// GL's rasteriser. Clip space spans a square of the screen whose edge is a power of two of px, so the viewport
+// transform is exact, and every tile of a screen sees the same window positions but for whole pixels.
+const char* const kVertex = R"(
+layout(location = 0) uniform mat3 toPixels;
+layout(location = 1) uniform float near;
+layout(location = 2) uniform vec3 window;
+layout(location = 3) uniform dvec3 pageOrigin;
+#if WIDE
+layout(location = 0) in uvec3 offset;
+#else
+layout(location = 0) in uvec2 packedOffset;
+#endif
+void main() {
+#if !WIDE
+    uvec3 offset = unpackNarrow(packedOffset);
+#endif
+    vec3 q = toPixels * vec3(pageOrigin + dvec3(offset));
+    if (q.z >= near) {
+        vec2 onScreen = round(q.xy / q.z * 256.0) * (1.0 / 256.0);
+        gl_Position = vec4((onScreen - window.xy) / window.z, near / q.z, 1.0);
+    } else {
+        gl_Position = vec4((q.xy - q.z * window.xy) / window.z, near, q.z);
+    }
+}
+)";
+
+const char* const kVisibilityFragment = R"(
+layout(location = 4) uniform uint firstId;
+layout(location = 0) out uint id;
+void main() {
+    id = firstId + uint(gl_PrimitiveID);
+}
+)";
+
+const char* const kWholeTile = R"(
+void main() {
+    gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}
+)";
+
+// Nothing is interpolated: the triangle is looked up, and everything is computed from its corners and the pixel's place
+// on the screen, so that a pixel comes out the same on whatever tile it lies.
+const char* const kShadingFragment = R"(
+layout(location = 0) uniform mat3 toPixels;
+layout(location = 1) uniform float near;
+layout(location = 5) uniform vec2 tileOrigin;
+layout(location = 6) uniform mat3 toDirection;
+layout(location = 7) uniform uint bank;
+layout(location = 8) uniform float stepSize;
+layout(location = 9) uniform vec2 ramp;
+layout(binding = 0) uniform usampler2D visible;
+
+struct Page {
+    dvec3 origin;
+    uvec4 streams;
+    uint bank;
+    uint wide;
+};
+layout(std430, binding = 0) readonly buffer Words { uint words[]; };
+layout(std430, binding = 1) readonly buffer Pages { Page pages[]; };
+
+layout(location = 0) out vec4 color;
+#if DEPTH
+layout(location = 1) out float depth;
+#endif
+
+uvec3 cornerIndices(uint stream, uint triangle) {
+    uint first = 3u * triangle;
+    uint a = words[stream + (first >> 1)], b = words[stream + (first >> 1) + 1u];
+    return (first & 1u) == 0u ? uvec3(a & 0xffffu, a >> 16, b & 0xffffu) : uvec3(a >> 16, b & 0xffffu, b >> 16);
+}
+
+uvec3 offsetOf(uint stream, bool wide, uint vertex) {
+    uint at = stream + (wide ? 3u : 2u) * vertex;
+    uvec3 p = uvec3(words[at], words[at + 1u], words[at + 2u]);
+    return wide ? p : unpackNarrow(p.xy);
+}
+
+// Unsigned differences, each exact before it becomes a float.
+vec3 edge(uvec3 from, uvec3 to) {
+    return mix(-vec3(from - to), vec3(to - from), greaterThanEqual(to, from));
+}
+
+vec3 colorOf(uint stream, uint vertex) {
+    return unpackUnorm4x8(words[stream + vertex]).rgb;
+}
+
+vec3 normalOf(uint stream, uint vertex) {
+    vec2 p = unpackSnorm2x16(words[stream + vertex]);
+    vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+    return normalize(n);
+}
+
+// Blue lowlands over green and sand to white: five colours at equal distances.
+vec3 rampColor(float height) {
+    const vec3 stops[5] = vec3[](vec3(0.18, 0.31, 0.56), vec3(0.20, 0.58, 0.58), vec3(0.52, 0.72, 0.40),
+                                 vec3(0.92, 0.76, 0.42), vec3(0.97, 0.94, 0.90));
+    float at = clamp(height, 0.0, 1.0) * 4.0;
+    int i = min(int(at), 3);
+    return mix(stops[i], stops[i + 1], at - float(i));
+}
+
+void main() {
+    uint id = texelFetch(visible, ivec2(gl_FragCoord.xy), 0).r;
+    if (id == 0u) discard;
+    uint slot = (id >> 16) - 1u;
+    if (pages[slot].bank != bank) discard;
+    uvec4 streams = pages[slot].streams;
+    bool wide = pages[slot].wide != 0u;
+    uvec3 corner = cornerIndices(streams.w, id & 0xffffu);
+    uvec3 first = offsetOf(streams.x, wide, corner.x);
+    vec3 a = vec3(pages[slot].origin + dvec3(first));
+    vec3 ab = edge(first, offsetOf(streams.x, wide, corner.y)), ac = edge(first, offsetOf(streams.x, wide, corner.z));
+
+    // Squared areas of the largest triangles must stay within a float.
+    float scale = wide ? 1.0 / 65536.0 : 1.0;
+    vec3 faceNormal = cross(ab * scale, ac * scale);
+    vec3 direction = toDirection * vec3(gl_FragCoord.xy + tileOrigin, 1.0);
+
+    vec3 base = vec3(0.8);
+    vec3 normal = faceNormal;
+    // Where the pixel's ray meets the triangle's plane, in steps along the screen's normal. Edge on, the plane says
+    // little: stay within the corners' distances.
+    vec3 forward = vec3(toPixels[0].z, toPixels[1].z, toPixels[2].z);
+    vec3 distances = vec3(0.0, dot(forward, ab), dot(forward, ac)) + dot(forward, a);
+    float nearest = max(near, min(distances.x, min(distances.y, distances.z)));
+    float farthest = max(nearest, max(distances.x, max(distances.y, distances.z)));
+    float slope = dot(faceNormal, direction);
+    float t = slope == 0.0 ? nearest : clamp(dot(faceNormal, a) / slope, nearest, farthest);
+#if COLORS || SMOOTH
+    // Barycentric weights of the second and third corner.
+    vec3 inside = (t * direction - a) * scale;
+    float area = dot(faceNormal, faceNormal);
+    vec2 weight = vec2(dot(cross(inside, ac * scale), faceNormal), dot(cross(ab * scale, inside), faceNormal));
+    weight = area > 0.0 ? clamp(weight / area, 0.0, 1.0) : vec2(0.0);
+#endif
+#if RAMP
+    base = rampColor((t * direction.z - ramp.x) * ramp.y);
+#endif
+#if COLORS
+    vec3 c0 = colorOf(streams.y, corner.x);
+    base = clamp(c0 + (colorOf(streams.y, corner.y) - c0) * weight.x + (colorOf(streams.y, corner.z) - c0) * weight.y, 0.0, 1.0);
+#endif
+#if SMOOTH
+    vec3 n0 = normalOf(streams.z, corner.x);
+    normal = n0 + (normalOf(streams.z, corner.y) - n0) * weight.x + (normalOf(streams.z, corner.z) - n0) * weight.y;
+#endif
+    // Headlight, both sides alike.
+    float lengths = sqrt(dot(normal, normal) * dot(direction, direction));
+    float facing = lengths > 0.0 ? min(1.0, abs(dot(normal, direction)) / lengths) : 1.0;
+    color = vec4(base * (0.25 + 0.75 * facing), 1.0);
+#if DEPTH
+    depth = t * stepSize;
+#endif
+}
+)";
+
+Result<GLuint> compileStage(GLenum stage, const std::string& source) {
+    const GLuint shader = glCreateShader(stage);
+    const char* text = source.c_str();
+    glShaderSource(shader, 1, &text, nullptr);
+    glCompileShader(shader);
+    GLint compiled = GL_FALSE;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (compiled) return shader;
+    char log[4096] = "";
+    glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+    glDeleteShader(shader);
+    return fail("the GL does not take iWalk's shader: {}", log);
+}
+
+Result<GLuint> link(GLuint vertex, GLuint fragment) {
+    const GLuint program = glCreateProgram();
+    glAttachShader(program, vertex);
+    glAttachShader(program, fragment);
+    glLinkProgram(program);
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (linked) return program;
+    char log[4096] = "";
+    glGetProgramInfoLog(program, sizeof log, nullptr, log);
+    glDeleteProgram(program);
+    return fail("the GL does not link iWalk's shaders: {}", log);
+}
+
+std::string define(const char* name, bool value) { return fmt::format("#define {} {}\n", name, value ? 1 : 0); }
+
+Result<std::uint32_t> compile(const std::string& defines, const char* vertexSource, const char* fragmentSource) {
+    const std::string preamble = "#version 450 core\n" + defines + kOffsets;
+    ASSIGN_OR_RETURN(const GLuint vertex, compileStage(GL_VERTEX_SHADER, preamble + vertexSource));
+    ASSIGN_OR_RETURN(const GLuint fragment, compileStage(GL_FRAGMENT_SHADER, preamble + fragmentSource));
+    return link(vertex, fragment);
+}
+
+}  // namespace
+
+Result<std::uint32_t> compileVisibilityProgram(bool wide) {
+    return compile(define("WIDE", wide), kVertex, kVisibilityFragment);
+}
+
+Result<std::uint32_t> compileShadingProgram(std::uint32_t variant) {
+    return compile(define("COLORS", variant & kShadeColors) + define("SMOOTH", variant & kShadeSmooth) +
+                       define("DEPTH", variant & kShadeDepth) + define("RAMP", variant & kShadeRamp),
+                   kWholeTile, kShadingFragment);
+}
+
+}  // namespace iwalk

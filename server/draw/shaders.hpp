@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/result.hpp"
+
+// A frame is drawn in two passes. The first rasterises pages into a visibility buffer: for each pixel the nearest
+// triangle's number, (slot of its page + 1) << 16 | triangle in the page, or 0. The second shades each pixel once.
+namespace iwalk {
+
+// What a shading program is compiled for: bits.
+enum ShadingVariant : std::uint32_t {
+    kShadeColors = 1,  // pages have colours, and they are used
+    kShadeSmooth = 2,  // pages have normals, and they are used
+    kShadeDepth = 4,   // writes eye-space depth to a second target
+    kShadeRamp = 8,    // coloured by height
+    kShadeVariants = 16,
+};
+
+// Where the uniforms are; the same in all programs that have them.
+enum UniformLocation : std::int32_t {
+    kToPixels = 0,     // mat3
+    kNear = 1,         // float, steps
+    kWindow = 2,       // vec3: centre (px of the screen) and half edge (px) of the square that clip space spans
+    kPageOrigin = 3,   // dvec3, from the eye, steps
+    kFirstId = 4,      // uint: the number of the draw's first triangle
+    kTileOrigin = 5,   // vec2, px of the screen
+    kToDirection = 6,  // mat3
+    kBank = 7,         // uint: the arena's bank that is bound
+    kStepSize = 8,     // float, model units
+    kRamp = 9,         // vec2: height (from the eye, steps) where the ramp begins, and 1 / its length
+};
+
+// What the second pass knows of a page, by slot; std430.
+struct ShadedPage {
+    double origin[4];          // from the eye, steps; the last is unused
+    std::uint32_t streams[4];  // where positions, colours, normals, indices begin: 32-bit words into the bank
+    std::uint32_t bank;
+    std::uint32_t wide;        // 1: positions as 3 x 32 bits
+    std::uint32_t unused[2];
+};
+static_assert(sizeof(ShadedPage) == 64);
+
+enum StorageBinding : std::uint32_t { kWordsBinding = 0, kPagesBinding = 1 };
+
+// Compile and link; the error holds the GL's log. The first pass comes for narrow and for wide pages.
+Result<std::uint32_t> compileVisibilityProgram(bool wide);
+Result<std::uint32_t> compileShadingProgram(std::uint32_t variant);
+
+}  // namespace iwalk

@@ -1,0 +1,123 @@
+#include "server/frame/frame_loop.hpp"
+
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "server/present/tile_writer.hpp"
+
+namespace iwalk {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class FrameLoop {
+  public:
+    explicit FrameLoop(const FrameLoopParts& parts) : parts_(parts) {
+        parts_.sync.setIdleWork([this] { passCapturesOn(); });
+    }
+    ~FrameLoop() { parts_.sync.setIdleWork({}); }
+
+    void run() {
+        for (FrameState state = nextState(); state.command != FrameState::quit; state = nextState()) drawFrame(state);
+    }
+
+  private:
+    FrameState nextState();
+    FrameState waitForRequest();
+    void drawFrame(const FrameState& state);
+    void present(const FrameState& state);
+    void report(const FrameState& state, protocol::TileStats stats, Clock::time_point swap);
+    void passCapturesOn();
+
+    const FrameLoopParts& parts_;
+    TileWriter writer_;
+    std::uint64_t frame_ = 0;
+    std::optional<Clock::time_point> lastSwap_;
+};
+
+FrameState FrameLoop::nextState() {
+    FrameState state;
+    if (parts_.sync.rank() == 0) state = waitForRequest();
+    parts_.sync.broadcast(state);
+    return state;
+}
+
+// Rank 0 waits for its clients here, the others in broadcast().
+FrameState FrameLoop::waitForRequest() {
+    FrameState state;
+    std::optional<protocol::CameraRequest> request;
+    int pauseUs = 50;
+    while (!parts_.stop && !(request = parts_.gateway->nextRequest())) {
+        passCapturesOn();
+        std::this_thread::sleep_for(std::chrono::microseconds(pauseUs));
+        pauseUs = std::min(1000, pauseUs * 2);
+    }
+    if (!request) {
+        state.command = FrameState::quit;
+        return state;
+    }
+    const auto copy = [](const glm::dvec3& from, double (&to)[3]) { to[0] = from.x, to[1] = from.y, to[2] = from.z; };
+    state.flags = request->flags;
+    state.frame = frame_;
+    state.sequence = request->sequence;
+    copy(request->camera.eye, state.eye);
+    copy(request->camera.target, state.target);
+    copy(request->camera.up, state.up);
+    state.fovY = request->camera.fovY;
+    state.near = parts_.near;
+    return state;
+}
+
+void FrameLoop::drawFrame(const FrameState& state) {
+    protocol::TileStats stats = parts_.pipeline.draw(state);
+    stats.barrierWaitMs = parts_.sync.barrier();
+    const Clock::time_point swap = Clock::now();
+    present(state);
+    report(state, stats, swap);
+    ++frame_;
+}
+
+void FrameLoop::present(const FrameState& state) {
+    const bool capture = state.flags & (protocol::kCaptureColor | protocol::kCaptureDepth);
+    if (!capture && parts_.outputDirectory.empty()) return;
+    TilePicture picture;
+    picture.frame = state.frame;
+    picture.sequence = state.sequence;
+    picture.capture = capture;
+    if (!parts_.outputDirectory.empty())
+        picture.file = fmt::format("{}/frame-{:06}/{}.png", parts_.outputDirectory, state.frame, parts_.tileName);
+    picture.color = parts_.pipeline.renderer().readColor();
+    if (state.flags & protocol::kCaptureDepth) picture.depth = parts_.pipeline.renderer().readDepth();
+    writer_.put(std::move(picture));
+}
+
+void FrameLoop::report(const FrameState& state, protocol::TileStats stats, Clock::time_point swap) {
+    std::vector<protocol::TileStats> all = parts_.sync.gather(stats);
+    if (parts_.gateway) {
+        protocol::FrameDone done;
+        done.sequence = state.sequence;
+        done.frame = state.frame;
+        done.timeMs = std::chrono::duration<double, std::milli>(swap - lastSwap_.value_or(swap)).count();
+        done.tiles = std::move(all);
+        parts_.gateway->frameDone(std::move(done));
+    }
+    lastSwap_ = swap;
+    passCapturesOn();
+}
+
+// Captures go from this rank's writer to rank 0, and from there through the gateway, whenever a wait leaves time.
+void FrameLoop::passCapturesOn() {
+    const auto tile = static_cast<std::uint32_t>(parts_.sync.rank());
+    for (EncodedTile& encoded : writer_.encoded())
+        parts_.sync.sendToRank0({encoded.sequence, tile, encoded.kind, std::move(encoded.bytes)});
+    for (CapturedTile& captured : parts_.sync.poll())
+        if (parts_.gateway)
+            parts_.gateway->tileImage({captured.sequence, captured.tile, captured.kind, std::move(captured.bytes)});
+}
+
+}  // namespace
+
+void runFrames(const FrameLoopParts& parts) { FrameLoop(parts).run(); }
+
+}  // namespace iwalk

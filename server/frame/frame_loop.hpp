@@ -1,0 +1,27 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "server/frame/tile_pipeline.hpp"
+#include "server/gateway/gateway.hpp"
+#include "server/sync/sync.hpp"
+
+namespace iwalk {
+
+// What a rank's frame loop works with; all outlive it.
+struct FrameLoopParts {
+    Sync& sync;
+    TilePipeline& pipeline;
+    Gateway* gateway = nullptr;        // on rank 0
+    std::string tileName;
+    std::string outputDirectory;       // --present file: where tiles are written; empty: nowhere
+    double near = 0;                   // model units
+    const std::atomic<bool>& stop;     // rank 0 ends the wall when it is set
+};
+
+// The way of a frame, again and again: frame state from the gateway (rank 0) to all ranks, draw, meet at the barrier,
+// present, report. Nothing is drawn while no client asks for anything new.
+void runFrames(const FrameLoopParts& parts);
+
+}  // namespace iwalk

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+namespace iwalk {
+
+// What every tile must agree on in a frame; rank 0 makes it and broadcasts it as it is.
+struct FrameState {
+    static constexpr std::uint32_t kMagic = 0x53465749;  // "IWFS"
+    static constexpr std::uint32_t kVersion = 1;
+    enum Command : std::uint32_t { draw = 0, quit = 1 };
+
+    std::uint32_t magic = kMagic;
+    std::uint32_t version = kVersion;
+    std::uint32_t command = draw;
+    std::uint32_t flags = 0;     // protocol::FrameFlags: what is captured for the client
+    std::uint64_t frame = 0;     // counts from 0
+    std::uint64_t sequence = 0;  // of the request, for its answer
+    double eye[3] = {}, target[3] = {}, up[3] = {};  // model units
+    double fovY = 0;                                 // degrees, of the whole wall
+    double near = 0;                                 // model units
+};
+static_assert(std::is_trivially_copyable_v<FrameState> && sizeof(FrameState) == 120);
+
+}  // namespace iwalk

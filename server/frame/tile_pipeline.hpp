@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/protocol.hpp"
+#include "common/settings.hpp"
+#include "server/cache/page_cache.hpp"
+#include "server/draw/renderer.hpp"
+#include "server/frame/frame_state.hpp"
+#include "server/wall/wall.hpp"
+
+namespace iwalk {
+
+// A dataset, opened and checked.
+struct Dataset {
+    std::string path;
+    Manifest manifest;
+    Hierarchy hierarchy;
+    std::uint64_t bytes = 0;  // of all files that the manifest names
+};
+Result<Dataset> openDataset(const std::string& path);
+
+// From a frame state to one tile's pixels: adapt, visibility, cache, draw. Knows nothing of MPI and sockets; needs a
+// current GL context.
+class TilePipeline {
+  public:
+    static Result<std::unique_ptr<TilePipeline>> create(const Dataset& dataset, const Wall& wall, std::size_t tile,
+                                                        const Settings& settings);
+
+    // Draws the frame completely, however long the pages take, into the renderer's framebuffer.
+    protocol::TileStats draw(const FrameState& state);
+
+    Renderer& renderer() { return *renderer_; }
+
+  private:
+    TilePipeline(const Dataset& dataset, const Wall& wall, std::size_t tile)
+        : dataset_(dataset), wall_(wall), tile_(tile), cut_(fullResolution(dataset.hierarchy)),
+          visibility_(dataset.hierarchy) {}
+
+    TileView viewOf(const FrameState& state) const;
+    void drawPages(const std::vector<VisibleRanges>& visible, const Frustum& frustum, const LatticeEye& eye,
+                   protocol::TileStats& stats);
+
+    const Dataset& dataset_;
+    const Wall& wall_;
+    const std::size_t tile_;
+    const Cut cut_;
+    const FrustumVisibility visibility_;
+    std::unique_ptr<Renderer> renderer_;
+    std::unique_ptr<PageCache> cache_;  // after the renderer, whose memory it uses
+};
+
+// What near plane rank 0 puts into the frame state: the setting, or a hundred thousandth of the model's diagonal. Depth
+// precision does not depend on it (reversed, in floats), so it is small enough to be forgotten. Model units.
+double nearPlane(const Settings& settings, const Manifest& manifest);
+
+}  // namespace iwalk

@@ -1,0 +1,91 @@
+#include "server/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <map>
+
+#include "common/version.hpp"
+
+namespace iwalk {
+namespace {
+
+constexpr const char* kDefaultListen = "127.0.0.1:7117";
+
+// "ADDR:PORT", with the address in brackets if it is IPv6.
+Result<void> parseListen(const std::string& text, ServerOptions& options) {
+    const std::size_t colon = text.rfind(':');
+    std::uint16_t port = 0;
+    const char* const end = text.data() + text.size();
+    if (colon == std::string::npos || colon == 0 || colon + 1 == text.size() ||
+        std::from_chars(text.data() + colon + 1, end, port).ptr != end)
+        return fail("--listen wants ADDRESS:PORT, as in {}, not '{}'", kDefaultListen, text);
+    options.address = text.substr(0, colon);
+    if (options.address.size() > 2 && options.address.front() == '[' && options.address.back() == ']')
+        options.address = options.address.substr(1, options.address.size() - 2);
+    options.port = port;
+    return {};
+}
+
+}  // namespace
+
+CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std::string& message) {
+    CLI::App app("Draws one tile of a wall per MPI rank:\n"
+                 "  mpirun -np TILES iwalk-server --dataset DATASET --wall WALL.toml");
+    app.option_defaults()->always_capture_default();
+    app.set_version_flag("--version", std::string("iwalk-server ") + kVersion);
+    std::string listen = kDefaultListen, present = "none";
+    app.add_option("--dataset", options.dataset, "directory that iwalk-preprocess made; every rank reads it")
+        ->type_name("DIR");
+    app.add_option("--wall", options.wallFile, "TOML file of the wall; tile i is drawn by rank i")
+        ->required()
+        ->type_name("FILE");
+    app.add_option("--listen", listen, "where rank 0 waits for clients; port 0 takes any free one")
+        ->type_name("ADDR:PORT");
+    app.add_option("--present", present, "where finished tiles go: none (clients may still capture) or file (PNG)")
+        ->check(CLI::IsMember({"none", "file"}))
+        ->type_name("none|file");
+    app.add_option("--out", options.outputDirectory, "for --present file: writes DIR/frame-000000/TILE.png")
+        ->type_name("DIR");
+
+    app.add_flag("--tiles", options.tilesOnly, "prints how many tiles, and so ranks, the wall has, and ends");
+
+    std::map<std::string, std::string> given;
+    for (const SettingInfo& setting : settingTable())
+        app.add_option(std::string("--") + setting.name, given[setting.name], setting.help)
+            ->type_name(setting.form)
+            ->group("Settings")
+            ->default_str(settingText(options.settings, setting.name));
+    try {
+        app.parse(argc, argv);
+        if (options.dataset.empty() && !options.tilesOnly) throw CLI::RequiredError("--dataset");
+        if (Result<void> parsed = parseListen(listen, options); !parsed)
+            throw CLI::ValidationError(parsed.error().message);
+        if ((present == "file") == options.outputDirectory.empty())
+            throw CLI::ValidationError("--present file and --out DIR go together");
+        for (const auto& [name, text] : given) {
+            if (text.empty()) continue;
+            options.given.emplace_back(name, text);
+            if (Result<void> set = setSetting(options.settings, name, text); !set)
+                throw CLI::ValidationError(set.error().message);
+        }
+    } catch (const CLI::Success& success) {
+        std::ostringstream out;
+        app.exit(success, out, out);
+        message = out.str();
+        return CommandLine::done;
+    } catch (const CLI::ParseError& error) {
+        message = std::string("iwalk-server: ") + error.what() + " (--help tells more)\n";
+        return CommandLine::wrong;
+    }
+    return CommandLine::run;
+}
+
+Result<void> readWallFile(ServerOptions& options) {
+    ASSIGN_OR_RETURN(options.wall, loadWall(options.wallFile));
+    options.settings = {};
+    for (const auto* list : {&options.wall.settings, &options.given})
+        for (const auto& [name, text] : *list) RETURN_IF_ERROR(setSetting(options.settings, name, text));
+    return {};
+}
+
+}  // namespace iwalk

@@ -1,0 +1,216 @@
+// The one file that calls MPI, from the drawing thread alone, on a communicator of its own. A blocking MPI call spins and
+// starves the other ranks of a box with fewer cores than ranks; so everything here is non-blocking and polled.
+
+#include <mpi.h>
+
+#include <chrono>
+#include <cstring>
+#include <list>
+#include <thread>
+
+#include "server/sync/sync.hpp"
+
+namespace iwalk {
+namespace {
+
+constexpr int kTileTag = 1;
+constexpr std::uint32_t kTileMagic = 0x4C545749;  // "IWTL"
+constexpr std::uint64_t kMaxTileBytes = std::uint64_t{1} << 30;
+
+// Goes before a captured tile's bytes in one message.
+struct TileHeader {
+    std::uint32_t magic = kTileMagic;
+    std::uint32_t tile = 0;
+    std::uint64_t sequence = 0;
+    std::uint32_t kind = 0;
+    std::uint32_t reserved = 0;
+};
+static_assert(sizeof(TileHeader) == 24);
+static_assert(std::is_trivially_copyable_v<protocol::TileStats>);
+
+// Open MPI's own error handler ends all ranks with a message; what comes back here is only ever success.
+void must(int code) { CHECK_OP(code, ==, MPI_SUCCESS); }
+
+int byteCount(std::size_t bytes) {
+    CHECK_OP(bytes, <=, kMaxTileBytes);
+    return static_cast<int>(bytes);
+}
+
+// Sleeps that grow: short waits end quickly, long ones cost next to nothing.
+class Patience {
+  public:
+    void wait() {
+        std::this_thread::sleep_for(std::chrono::microseconds(pause_));
+        pause_ = std::min(1000, pause_ + pause_ / 2);
+    }
+
+  private:
+    int pause_ = 20;
+};
+
+class MpiSync : public Sync {
+  public:
+    MpiSync() {
+        must(MPI_Comm_dup(MPI_COMM_WORLD, &world_));
+        must(MPI_Comm_rank(world_, &rank_));
+        must(MPI_Comm_size(world_, &size_));
+    }
+    ~MpiSync() override {
+        drain();
+        MPI_Comm_free(&world_);
+        MPI_Finalize();
+    }
+
+    void setIdleWork(std::function<void()> work) override { idleWork_ = std::move(work); }
+
+    int rank() const override { return rank_; }
+    int size() const override { return size_; }
+
+    bool agree(bool mine) override {
+        const int in = mine ? 1 : 0;
+        int out = 0;
+        MPI_Request request;
+        must(MPI_Iallreduce(&in, &out, 1, MPI_INT, MPI_MIN, world_, &request));
+        finish(request);
+        return out == 1;
+    }
+
+    std::vector<std::string> gatherText(const std::string& mine) override;
+
+    void broadcast(FrameState& state) override {
+        MPI_Request request;
+        must(MPI_Ibcast(&state, sizeof state, MPI_BYTE, 0, world_, &request));
+        finish(request);
+        CHECK_OP(state.magic, ==, FrameState::kMagic);
+        CHECK_OP(state.version, ==, FrameState::kVersion);
+    }
+
+    double barrier() override {
+        const auto start = std::chrono::steady_clock::now();
+        MPI_Request request;
+        must(MPI_Ibarrier(world_, &request));
+        finish(request);
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    std::vector<protocol::TileStats> gather(const protocol::TileStats& mine) override {
+        std::vector<protocol::TileStats> all(rank_ == 0 ? static_cast<std::size_t>(size_) : 0);
+        MPI_Request request;
+        must(MPI_Igather(&mine, sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, 0, world_, &request));
+        finish(request);
+        return all;
+    }
+
+    void sendToRank0(CapturedTile tile) override;
+    std::vector<CapturedTile> poll() override;
+
+  private:
+    struct Outgoing {
+        std::vector<std::byte> bytes;
+        MPI_Request request = MPI_REQUEST_NULL;
+    };
+
+    void finish(MPI_Request& request) {
+        Patience patience;
+        for (int done = 0; must(MPI_Test(&request, &done, MPI_STATUS_IGNORE)), !done;) {
+            if (idleWork_) idleWork_();
+            patience.wait();
+        }
+    }
+    void dropSent();
+    void drain();
+
+    MPI_Comm world_ = MPI_COMM_NULL;
+    int rank_ = 0, size_ = 1;
+    std::function<void()> idleWork_;
+    std::list<Outgoing> outgoing_;  // a list: MPI reads the bytes where they are
+    std::vector<CapturedTile> own_;  // rank 0's, which need no MPI
+};
+
+std::vector<std::string> MpiSync::gatherText(const std::string& mine) {
+    constexpr int kSlot = kMaxText + 1;
+    std::vector<char> slot(kSlot, '\0'), all(rank_ == 0 ? kSlot * static_cast<std::size_t>(size_) : 0);
+    std::memcpy(slot.data(), mine.data(), std::min(mine.size(), kMaxText));
+    MPI_Request request;
+    must(MPI_Igather(slot.data(), kSlot, MPI_CHAR, all.data(), kSlot, MPI_CHAR, 0, world_, &request));
+    finish(request);
+    std::vector<std::string> texts;
+    for (std::size_t at = 0; at < all.size(); at += kSlot) texts.emplace_back(all.data() + at);
+    return texts;
+}
+
+void MpiSync::sendToRank0(CapturedTile tile) {
+    if (rank_ == 0) {
+        own_.push_back(std::move(tile));
+        return;
+    }
+    TileHeader header;
+    header.tile = tile.tile;
+    header.sequence = tile.sequence;
+    header.kind = static_cast<std::uint32_t>(tile.kind);
+    Outgoing& outgoing = outgoing_.emplace_back();
+    outgoing.bytes.resize(sizeof header + tile.bytes.size());
+    std::memcpy(outgoing.bytes.data(), &header, sizeof header);
+    std::memcpy(outgoing.bytes.data() + sizeof header, tile.bytes.data(), tile.bytes.size());
+    must(MPI_Isend(outgoing.bytes.data(), byteCount(outgoing.bytes.size()), MPI_BYTE, 0, kTileTag, world_,
+                   &outgoing.request));
+}
+
+std::vector<CapturedTile> MpiSync::poll() {
+    dropSent();
+    std::vector<CapturedTile> arrived = std::move(own_);
+    own_.clear();
+    if (rank_ != 0) return arrived;
+    while (true) {
+        int waiting = 0, count = 0;
+        MPI_Message message;
+        MPI_Status status;
+        must(MPI_Improbe(MPI_ANY_SOURCE, kTileTag, world_, &waiting, &message, &status));
+        if (!waiting) return arrived;
+        must(MPI_Get_count(&status, MPI_BYTE, &count));
+        std::vector<std::byte> bytes(static_cast<std::size_t>(count));
+        MPI_Request request;
+        must(MPI_Imrecv(bytes.data(), count, MPI_BYTE, &message, &request));
+        Patience patience;  // the sender has it ready: no idle work, which may be what called us
+        for (int done = 0; must(MPI_Test(&request, &done, MPI_STATUS_IGNORE)), !done;) patience.wait();
+        TileHeader header;
+        CHECK_OP(bytes.size(), >=, sizeof header);
+        std::memcpy(&header, bytes.data(), sizeof header);
+        CHECK_OP(header.magic, ==, kTileMagic);
+        bytes.erase(bytes.begin(), bytes.begin() + sizeof header);
+        arrived.push_back({header.sequence, header.tile, static_cast<protocol::ImageKind>(header.kind), std::move(bytes)});
+    }
+}
+
+void MpiSync::dropSent() {
+    for (auto outgoing = outgoing_.begin(); outgoing != outgoing_.end();) {
+        int sent = 0;
+        must(MPI_Test(&outgoing->request, &sent, MPI_STATUS_IGNORE));
+        outgoing = sent ? outgoing_.erase(outgoing) : std::next(outgoing);
+    }
+}
+
+// MPI must not be finalised with messages under way: each rank comes to a last barrier when its tiles are gone, and
+// rank 0 takes them in meanwhile.
+void MpiSync::drain() {
+    idleWork_ = {};
+    for (Patience patience; dropSent(), !outgoing_.empty();) patience.wait();
+    MPI_Request request;
+    must(MPI_Ibarrier(world_, &request));
+    Patience patience;
+    for (int done = 0; must(MPI_Test(&request, &done, MPI_STATUS_IGNORE)), !done;) {
+        poll();
+        patience.wait();
+    }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Sync>> startMpi(int& argc, char**& argv) {
+    int provided = MPI_THREAD_SINGLE;
+    if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS || provided < MPI_THREAD_FUNNELED)
+        return fail("MPI does not start with threads: iwalk-server needs Open MPI (Debian: openmpi-bin)");
+    return std::unique_ptr<Sync>(std::make_unique<MpiSync>());
+}
+
+}  // namespace iwalk

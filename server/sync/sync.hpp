@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/protocol.hpp"
+#include "common/result.hpp"
+#include "server/frame/frame_state.hpp"
+
+namespace iwalk {
+
+// A captured tile on its way to rank 0.
+struct CapturedTile {
+    std::uint64_t sequence = 0;
+    std::uint32_t tile = 0;
+    protocol::ImageKind kind = protocol::ImageKind::png;
+    std::vector<std::byte> bytes;
+};
+
+// Keeps the ranks of a wall together. Collective calls are made by all ranks in the same order. Nothing in here spins:
+// every wait is polled with sleeps that grow from 20 us to 1 ms, and what setIdleWork() gave is done between them.
+class Sync {
+  public:
+    static constexpr std::size_t kMaxText = 1023;
+    virtual ~Sync() = default;
+
+    virtual int rank() const = 0;
+    virtual int size() const = 0;
+
+    // Called while a collective call waits; may call sendToRank0() and poll().
+    virtual void setIdleWork(std::function<void()> work) = 0;
+
+    // True when every rank says true.
+    virtual bool agree(bool mine) = 0;
+    // Every rank's text (its first kMaxText bytes), by rank, on rank 0; empty elsewhere.
+    virtual std::vector<std::string> gatherText(const std::string& mine) = 0;
+
+    // Gives rank 0's frame state to all.
+    virtual void broadcast(FrameState& state) = 0;
+    // Returns when all ranks have come here; the result is how long this one waited, in ms.
+    virtual double barrier() = 0;
+    // Every rank's figures, by rank, on rank 0; empty elsewhere.
+    virtual std::vector<protocol::TileStats> gather(const protocol::TileStats& mine) = 0;
+
+    // Sends a captured tile to rank 0 without waiting; the bytes are kept until they are there.
+    virtual void sendToRank0(CapturedTile tile) = 0;
+    // Rank 0: the captured tiles that have come in. Other ranks: nothing. Both: lets transfers go on.
+    virtual std::vector<CapturedTile> poll() = 0;
+};
+
+// Initialises MPI (Open MPI) for one drawing thread; finalises it when destroyed. Only once in a process.
+Result<std::unique_ptr<Sync>> startMpi(int& argc, char**& argv);
+
+}  // namespace iwalk

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# A whole wall: pictures and report along a path; clients that vanish, wait and send garbage; a broken page; a busy port.
+source "$(dirname "$0")/lib.sh"
+cd "$work"
+make_ply model.ply 40
+"$bin/iwalk-preprocess" build model.ply -o dataset --leaf-triangles 200 >/dev/null 2>&1
+printf '[wall]\nrows = 2\ncolumns = 2\ntile_px = [160, 120]\nbezel_px = [8, 4]\n' >wall.toml
+frames=$(for i in 1 2 3 4 5 6; do printf '{"eye": [20, -%d, 12], "target": [20, 20, 0], "up": [0, 0, 1]},' $((8 + i)); done)
+echo "{\"fov_y_deg\": 50, \"frames\": [${frames%,}]}" >path.json
+
+# The whole way in one command, and nothing left running.
+"$source/scripts/wall" dataset --wall wall.toml --bin "$bin" --path path.json --capture pictures --capture-depth \
+    --report report.json -- --cache 128k || complain "scripts/wall failed"
+for frame in 0 1 2 3 4 5; do
+    for tile in 0-0 0-1 1-0 1-1; do
+        [ -s "pictures/frame-00000$frame/tile-$tile.png" ] || complain "no picture of tile $tile in frame $frame"
+        [ -s "pictures/frame-00000$frame/tile-$tile.exr" ] || complain "no depth of tile $tile in frame $frame"
+    done
+    [ -s "pictures/frame-00000$frame/wall.png" ] || complain "frame $frame was not stitched"
+done
+[ "$(grep -c '"visibility_ms"' report.json)" -ge 1 ] || complain "no figures in the report"
+"$bin/iwalk-compare" pictures/frame-000000/wall.png pictures/frame-000000/wall.png >/dev/null || complain "a picture differs from itself"
+if "$bin/iwalk-compare" pictures/frame-000000/wall.png pictures/frame-000003/wall.png >/dev/null; then
+    complain "the camera does not move"
+fi
+sleep 0.3
+[ -z "$(pgrep -f "$work/dataset" || true)" ] || complain "something still runs"
+
+# A wall of its own for the clients below.
+start_wall() {
+    ranks 4 "$bin/iwalk-server" --dataset "$1" --wall wall.toml --listen 127.0.0.1:0 >"$work/log" 2>"$work/errors" &
+    wall=$!
+    until address=$(sed -n 's/.*listening on //p' "$work/log") && [ -n "$address" ]; do
+        kill -0 "$wall" || { cat "$work/errors" >&2; exit 1; }
+        sleep 0.05
+    done
+    port=${address##*:}
+}
+stop_wall() {
+    kill -TERM "$wall" 2>/dev/null || true
+    wait "$wall" 2>/dev/null || true
+    wall=
+}
+wall=
+cleanup() { [ -z "$wall" ] || stop_wall; }
+fly() { timeout 60 "$bin/iwalk-client" --connect "$address" --path "${2:-path.json}" --capture "$1" >/dev/null; }
+same_as_before() {
+    "$bin/iwalk-compare" "$1/frame-000005/wall.png" pictures/frame-000005/wall.png >/dev/null || complain "$2 changed the picture"
+}
+
+start_wall dataset
+refuses "$port" ranks 4 "$bin/iwalk-server" --dataset dataset --wall wall.toml --listen "127.0.0.1:$port"
+fly first || complain "the first client does not fly"
+same_as_before first "a second wall"
+
+# One vanishes in the middle, one sends garbage, one is silent, one says only half a message.
+repeated=$(for _ in $(seq 60); do echo -n "$frames"; done)
+echo "{\"fov_y_deg\": 50, \"frames\": [${repeated%,}]}" >long.json
+timeout 60 "$bin/iwalk-client" --connect "$address" --path long.json >/dev/null 2>&1 &
+vanishing=$!
+sleep 0.3
+kill -KILL "$vanishing" 2>/dev/null || true
+wait "$vanishing" 2>/dev/null || true
+head -c 100000 /dev/urandom >"/dev/tcp/127.0.0.1/$port" 2>/dev/null || true
+exec 8<>"/dev/tcp/127.0.0.1/$port" 9<>"/dev/tcp/127.0.0.1/$port"
+printf '\x20\x00\x00' >&9
+fly second || complain "nobody takes over from a vanished controller"
+same_as_before second "bad clients"
+exec 8>&- 9>&-
+stop_wall
+
+# A page with a flipped byte: the wall draws on without it and says so.
+cp -r dataset flipped
+flip "$(ls flipped/pages-*.bin)" 1500
+start_wall flipped
+fly third || complain "a broken page ends the flight"
+grep -q 'drawn without page' "$work/errors" || complain "a broken page is not reported: $(cat "$work/errors")"
+stop_wall
+finish

@@ -1,0 +1,60 @@
+#include "tests/server/wall_renders.hpp"
+
+#include <algorithm>
+
+#include "common/check.hpp"
+
+namespace iwalk::tools {
+namespace {
+
+FrameState stateOf(const Camera& camera, double near) {
+    FrameState state;
+    const auto copy = [](const glm::dvec3& from, double (&to)[3]) { to[0] = from.x, to[1] = from.y, to[2] = from.z; };
+    copy(camera.eye, state.eye);
+    copy(camera.target, state.target);
+    copy(camera.up, state.up);
+    state.fovY = camera.fovY;
+    state.near = near;
+    state.flags = protocol::kCaptureColor | protocol::kCaptureDepth;
+    return state;
+}
+
+template <class T>
+void paste(const Image<T>& tile, const PixelRect& rect, Image<T>& wall) {
+    CHECK_OP(tile.width, ==, rect.width);
+    for (int y = 0; y < rect.height; ++y)
+        std::copy_n(tile.at(0, y), rect.width * tile.channels, wall.at(rect.x, rect.y + y));
+}
+
+}  // namespace
+
+Wall wallOf(int width, int height, int columns, int rows) {
+    Wall wall;
+    wall.width = width;
+    wall.height = height;
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const int left = width * column / columns, top = height * row / rows;
+            const PixelRect rect{left, top, width * (column + 1) / columns - left, height * (row + 1) / rows - top};
+            wall.tiles.push_back({fmt::format("tile-{}-{}", row, column), 0, rect, rect});
+        }
+    return wall;
+}
+
+Picture WallRenders::draw(const Wall& wall, const Camera& camera) {
+    Picture picture{ColorImage(wall.width, wall.height, 3), DepthImage(wall.width, wall.height, 1)};
+    stats_ = {};
+    for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
+        Result<std::unique_ptr<TilePipeline>> pipeline = TilePipeline::create(dataset_, wall, i, settings_);
+        if (!pipeline) detail::checkFailed(__FILE__, __LINE__, pipeline.error().message);
+        const protocol::TileStats stats = (*pipeline)->draw(stateOf(camera, nearPlane(settings_, dataset_.manifest)));
+        stats_.triangles += stats.triangles;
+        stats_.badPages += stats.badPages;
+        stats_.fetchedBytes += stats.fetchedBytes;
+        paste((*pipeline)->renderer().readColor(), wall.tiles[i].onWall, picture.color);
+        paste((*pipeline)->renderer().readDepth(), wall.tiles[i].onWall, picture.depth);
+    }
+    return picture;
+}
+
+}  // namespace iwalk::tools
