@@ -40,6 +40,7 @@ Result<void> runVerify(const std::string& dataset, bool json) {
         }
         return {};
     }
+    if (result->problems.size() == 1) return fail("{}; build the dataset again", result->problems[0]);
     for (std::size_t i = 0; i < std::min(result->problems.size(), kShownProblems); ++i) {
         fmt::print(stderr, "iwalk-preprocess: {}\n", result->problems[i]);
     }

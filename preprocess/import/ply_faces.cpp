@@ -22,9 +22,6 @@ class FaceReader {
         ByteStream& stream = values_.stream();
         RETURN_IF_ERROR(stream.fill(kPlainWindow));
         const std::string_view window = stream.view().substr(0, kPlainWindow);
-        const auto placeOf = [&, begin = stream.offset()](const char* p) {
-            return begin + static_cast<std::uint64_t>(p - window.data());
-        };
         const char* at = window.data();
         const char* const end = at + window.size();
         const std::uint64_t limit = element_.count - face;
@@ -32,17 +29,9 @@ class FaceReader {
         for (; done < limit && at != end; ++done) {
             const std::size_t corners = static_cast<unsigned char>(*at);
             if (static_cast<std::size_t>(end - at) < 1 + 4 * corners) break;
-            output_.begin();
-            const char* index = at + 1;
-            at = index + 4 * corners;
-            for (; index != at; index += 4) {
-                const auto vertex = loadBytes<std::uint32_t, swap>(index);
-                if (vertex >= store_.size()) {
-                    values_.record(element_, face + done);
-                    return badIndex(signedAsWritten(vertex), placeOf(index));
-                }
-                RETURN_IF_ERROR(corner(vertex));
-            }
+            values_.record(element_, face + done);
+            RETURN_IF_ERROR(readPlainPolygon<swap>(at + 1, corners));
+            at += 1 + 4 * corners;
         }
         stream.advance(static_cast<std::size_t>(at - window.data()));
         if (done > 0) return done;
@@ -61,6 +50,34 @@ class FaceReader {
   private:
     static constexpr std::size_t kPlainWindow = std::size_t{64} << 10;
 
+    // Indices in the stream's view.
+    template <bool swap>
+    Result<void> readPlainPolygon(const char* indices, std::size_t corners) {
+        if (corners == 3) {
+            Triangle& triangle = output_.next();
+            for (std::size_t i = 0; i < 3; ++i) {
+                RETURN_IF_ERROR(readPlainCorner<swap>(indices + 4 * i, triangle[i]));
+            }
+            return output_.add();
+        }
+        output_.begin();
+        for (std::size_t i = 0; i < corners; ++i) {
+            Corner corner;
+            RETURN_IF_ERROR(readPlainCorner<swap>(indices + 4 * i, corner));
+            RETURN_IF_ERROR(output_.corner(corner));
+        }
+        return {};
+    }
+
+    template <bool swap>
+    Result<void> readPlainCorner(const char* at, Corner& corner) {
+        const auto index = loadBytes<std::uint32_t, swap>(at);
+        if (index < store_.size()) return store_.get(index, corner);
+        const ByteStream& stream = values_.stream();
+        return badIndex(signedAsWritten(index),
+                        stream.offset() + static_cast<std::uint64_t>(at - stream.view().data()));
+    }
+
     Result<void> readPolygon() {
         const PlyProperty& list = element_.properties[indices_];
         ASSIGN_OR_RETURN(std::uint64_t corners, values_.listLength(list.countType, list.type));
@@ -71,15 +88,11 @@ class FaceReader {
             if (!(index >= 0) || index != std::floor(index) || index >= static_cast<double>(store_.size())) {
                 return badIndex(index, values_.place());
             }
-            RETURN_IF_ERROR(corner(static_cast<std::uint64_t>(index)));
+            Corner corner;
+            RETURN_IF_ERROR(store_.get(static_cast<std::uint64_t>(index), corner));
+            RETURN_IF_ERROR(output_.corner(corner));
         }
         return {};
-    }
-
-    Result<void> corner(std::uint64_t index) {
-        Corner found;
-        RETURN_IF_ERROR(store_.get(index, found));
-        return output_.corner(found);
     }
 
     double signedAsWritten(std::uint32_t index) const {

@@ -28,34 +28,34 @@ void completeNormals(Triangle& t) {
 
 }  // namespace
 
-TriangleOutput::TriangleOutput(bool normals, const TriangleSink& sink) : normals_(normals), sink_(sink) {
-    batch_.reserve(kBatch);
-}
+TriangleOutput::TriangleOutput(bool normals, const TriangleSink& sink) : normals_(normals), sink_(sink) {}
 
 Result<void> TriangleOutput::corner(const Corner& corner) {
-    if (corners_ == 2) RETURN_IF_ERROR(add(corner));
+    if (corners_ == 2) {
+        next() = {first_, previous_, corner};
+        RETURN_IF_ERROR(add());
+    }
     if (corners_ == 0) first_ = corner;
     if (corners_ < 2) ++corners_;
     previous_ = corner;
     return {};
 }
 
-Result<void> TriangleOutput::add(const Corner& third) {
-    if (!isFinite(first_.position) || !isFinite(previous_.position) || !isFinite(third.position)) {
+Result<void> TriangleOutput::add() {
+    Triangle& t = next();
+    if (!isFinite(t[0].position) || !isFinite(t[1].position) || !isFinite(t[2].position)) {
         ++counts_.droppedNonFinite;
         return {};
     }
-    Triangle& triangle = batch_.emplace_back(Triangle{first_, previous_, third});
-    if (normals_) completeNormals(triangle);
+    if (normals_) completeNormals(t);
     ++counts_.triangles;
-    return batch_.size() == kBatch ? flush() : Result<void>();
+    return ++size_ == kBatch ? flush() : Result<void>();
 }
 
 Result<void> TriangleOutput::flush() {
-    if (batch_.empty()) return {};
-    if (sink_) RETURN_IF_ERROR(sink_(batch_));
-    batch_.clear();
-    return {};
+    const std::span<const Triangle> ready(batch_.data(), size_);
+    size_ = 0;
+    return sink_ && !ready.empty() ? sink_(ready) : Result<void>();
 }
 
 }  // namespace iwalk

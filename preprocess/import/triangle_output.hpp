@@ -18,20 +18,22 @@ class TriangleOutput {
     void begin() { corners_ = 0; }
     // Its next corner.
     Result<void> corner(const Corner& corner);
+    // The quick way for what is a triangle: fill in all of next(), then add() it.
+    Triangle& next() { return batch_[size_]; }
+    Result<void> add();
     // Hands on what is left. Call at the end.
     Result<void> flush();
 
     const ImportCounts& counts() const { return counts_; }
 
   private:
-    Result<void> add(const Corner& third);
-
     static constexpr std::size_t kBatch = 4096;  // triangles of 120 bytes
     bool normals_;
     const TriangleSink& sink_;
     std::size_t corners_ = 0;  // of the polygon under way; stops counting at 2
     Corner first_, previous_;
-    std::vector<Triangle> batch_;
+    std::vector<Triangle> batch_ = std::vector<Triangle>(kBatch);
+    std::size_t size_ = 0;  // triangles in the batch
     ImportCounts counts_;
 };
 

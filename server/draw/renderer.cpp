@@ -22,46 +22,32 @@ constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
 constexpr int kMaxWindow = 16384;  // px: GL 4.5's least largest viewport
 
-// A part of a tile, and the square of the screen that clip space spans while it is drawn. The square's edge is a power of
-// two, so that transforms are exact.
+// The square of the screen that clip space spans while a block is drawn. Its edge is a power of two, so that transforms
+// are exact. Screens wider than the largest viewport have a window for each strip of half that size; like blocks, strips
+// belong to the screen and not to the tile.
 struct Window {
     int x = 0, y = 0, edge = 0;  // px of the screen
-    PixelRect part;              // px of the screen, within the tile
 };
 
-struct Span {
-    int window, from, to;  // px of the screen
-};
-
-// Screens wider than the largest viewport are drawn in strips of half that size, each with a window around it. Strips and
-// windows belong to the screen, not to the tile: a pixel is drawn through the same window however the screen is cut.
-std::vector<Span> spansOf(int screen, int edge, int from, int to) {
-    if (screen <= edge) return {{0, from, to}};
-    const int strip = edge / 2;
-    std::vector<Span> spans;
-    for (int start = from / strip * strip; start < to; start += strip)
-        spans.push_back({start - strip / 2, std::max(from, start), std::min(to, start + strip)});
-    return spans;
-}
-
-std::vector<Window> windowsFor(int screenWidth, int screenHeight, const PixelRect& tile) {
-    const int longest = std::max(screenWidth, screenHeight);
+Window windowFor(const TileView& view, const Block& block) {
+    const int longest = std::max(view.screenWidth, view.screenHeight);
     const int edge = std::min(kMaxWindow, static_cast<int>(std::bit_ceil(static_cast<unsigned>(longest))));
-    std::vector<Window> windows;
-    for (const Span& y : spansOf(screenHeight, edge, tile.y, tile.y + tile.height))
-        for (const Span& x : spansOf(screenWidth, edge, tile.x, tile.x + tile.width))
-            windows.push_back({x.window, y.window, edge, {x.from, y.from, x.to - x.from, y.to - y.from}});
-    return windows;
+    const int strip = edge / 2;
+    const auto start = [&](int from, int screen) { return screen <= edge ? 0 : from / strip * strip - strip / 2; };
+    return {start(block.x, view.screenWidth), start(block.y, view.screenHeight), edge};
 }
+static_assert(kMaxWindow / 2 % kBlockEdge == 0);
 
 class GlRenderer : public Renderer {
   public:
-    GlRenderer(int width, int height, const SceneLook& look) : width_(width), height_(height), look_(look) {}
+    GlRenderer(const PixelRect& tile, const SceneLook& look)
+        : width_(tile.width), height_(tile.height), tile_(tile), look_(look) {}
     ~GlRenderer() override;
     Result<void> prepare();
 
     Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override;
     void beginFrame(const TileView& view) override;
+    void beginBlock(const Block& block) override;
     void draw(const ResidentPage& page, const PageRecord& record, std::span<const IndexRun> runs) override;
     void finish() override;
     ColorImage readColor() override;
@@ -73,12 +59,12 @@ class GlRenderer : public Renderer {
     std::uint32_t addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
                           const glm::dvec3& origin);
     void useVisibilityProgram(bool wide);
-    void useWindow(const Window& window);
     void shade();
     std::uint32_t shadingVariant() const;
     void useShadingProgram();
 
-    const int width_, height_;
+    const int width_, height_;  // px
+    const PixelRect tile_;
     const SceneLook look_;
     GLuint visibleFramebuffer_ = 0, visible_ = 0, depthBuffer_ = 0;
     GLuint framebuffer_ = 0, color_ = 0;
@@ -91,8 +77,8 @@ class GlRenderer : public Renderer {
     GLuint pagesBuffer_ = 0;
     std::vector<ShadedPage> slots_;  // pages drawn since the last shading
     TileView view_;
-    std::vector<Window> windows_;  // one, unless the screen is wider than the largest viewport
-    GLuint used_ = 0;  // the visibility program that has this frame's uniforms and is in use
+    Block block_;
+    GLuint used_ = 0;  // the visibility program that has this block's uniforms and is in use
 };
 
 GLuint makeTexture(GLenum format, int width, int height) {
@@ -142,10 +128,15 @@ Result<void> GlRenderer::prepare() {
 }
 
 Result<void> GlRenderer::makeFramebuffers() {
-    visible_ = makeTexture(GL_R32UI, width_, height_);
+    int blockWidth = 0, blockHeight = 0;
+    for (const Block& block : blocksOf(tile_)) {
+        blockWidth = std::max(blockWidth, block.part.x + block.part.width - block.x);
+        blockHeight = std::max(blockHeight, block.part.y + block.part.height - block.y);
+    }
+    visible_ = makeTexture(GL_R32UI, blockWidth, blockHeight);
     for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
         glTextureParameteri(visible_, filter, GL_NEAREST);  // integers cannot be filtered: without this nothing is read
-    depthBuffer_ = makeTexture(GL_DEPTH_COMPONENT32F, width_, height_);
+    depthBuffer_ = makeTexture(GL_DEPTH_COMPONENT32F, blockWidth, blockHeight);
     color_ = makeTexture(GL_RGBA8, width_, height_);
     glCreateFramebuffers(1, &visibleFramebuffer_);
     glNamedFramebufferTexture(visibleFramebuffer_, GL_COLOR_ATTACHMENT0, visible_, 0);
@@ -181,21 +172,26 @@ Result<std::vector<std::span<std::byte>>> GlRenderer::lendArena(std::uint64_t by
 }
 
 void GlRenderer::beginFrame(const TileView& view) {
+    CHECK(view.tile == tile_);
     view_ = view;
-    windows_ = windowsFor(view.screenWidth, view.screenHeight, view.tile);
-    used_ = 0;
-    slots_.clear();
     if (view.captureDepth && captureFramebuffer_ == 0) addDepthTarget();
     shaded_ = view.captureDepth ? captureFramebuffer_ : framebuffer_;
 
     const auto channel = [&](int shift) { return static_cast<float>((look_.background >> shift) & 255) / 255; };
     const float background[] = {channel(16), channel(8), channel(0), 1};
     const float nothing[] = {0, 0, 0, 0};
-    const GLuint nobody[] = {0, 0, 0, 0};
     glClearNamedFramebufferfv(shaded_, GL_COLOR, 0, background);
     if (view.captureDepth) glClearNamedFramebufferfv(shaded_, GL_COLOR, 1, nothing);
+}
+
+void GlRenderer::beginBlock(const Block& block) {
+    block_ = block;
+    used_ = 0;
+    slots_.clear();
+    const float infinitelyFar[] = {0};
+    const GLuint nobody[] = {0, 0, 0, 0};
     glClearNamedFramebufferuiv(visibleFramebuffer_, GL_COLOR, 0, nobody);
-    glClearNamedFramebufferfv(visibleFramebuffer_, GL_DEPTH, 0, nothing);
+    glClearNamedFramebufferfv(visibleFramebuffer_, GL_DEPTH, 0, infinitelyFar);
 }
 
 // Frames whose depth is wanted have a framebuffer of their own.
@@ -218,13 +214,10 @@ void GlRenderer::useVisibilityProgram(bool wide) {
     glUseProgram(used_);
     glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
     glUniform1f(kNear, static_cast<float>(view_.near));
-    useWindow(windows_[0]);
-}
-
-void GlRenderer::useWindow(const Window& window) {
+    const Window window = windowFor(view_, block_);
     const float half = static_cast<float>(window.edge) / 2;
-    glViewport(window.x - view_.tile.x, window.y - view_.tile.y, window.edge, window.edge);
-    glScissor(window.part.x - view_.tile.x, window.part.y - view_.tile.y, window.part.width, window.part.height);
+    glViewport(window.x - block_.x, window.y - block_.y, window.edge, window.edge);
+    glScissor(block_.part.x - block_.x, block_.part.y - block_.y, block_.part.width, block_.part.height);
     glUniform3f(kWindow, static_cast<float>(window.x) + half, static_cast<float>(window.y) + half, half);
 }
 
@@ -242,14 +235,11 @@ void GlRenderer::draw(const ResidentPage& page, const PageRecord& record, std::s
                               static_cast<GLsizei>(layout.positionStride));
     glVertexArrayElementBuffer(vertexArrays_[wide], buffer);
     glUniform3d(kPageOrigin, origin.x, origin.y, origin.z);
-    for (const Window& window : windows_) {
-        if (windows_.size() > 1) useWindow(window);
-        for (const IndexRun& run : runs) {
-            glUniform1ui(kFirstId, (slot + 1) << 16 | run.firstIndex / 3);
-            const std::uintptr_t at = static_cast<std::uintptr_t>(offset) + layout.indices + 2 * run.firstIndex;
-            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(run.indexCount), GL_UNSIGNED_SHORT,
-                           reinterpret_cast<const void*>(at));
-        }
+    for (const IndexRun& run : runs) {
+        glUniform1ui(kFirstId, (slot + 1) << 16 | run.firstIndex / 3);
+        const std::uintptr_t at = static_cast<std::uintptr_t>(offset) + layout.indices + 2 * run.firstIndex;
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(run.indexCount), GL_UNSIGNED_SHORT,
+                       reinterpret_cast<const void*>(at));
     }
 }
 
@@ -277,7 +267,7 @@ void GlRenderer::shade() {
     glBindFramebuffer(GL_FRAMEBUFFER, shaded_);
     glViewport(0, 0, width_, height_);
     glDisable(GL_DEPTH_TEST);
-    glDisable(GL_SCISSOR_TEST);
+    glScissor(block_.part.x - tile_.x, block_.part.y - tile_.y, block_.part.width, block_.part.height);
     glBindVertexArray(emptyArray_);
     glBindTextureUnit(0, visible_);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kPagesBinding, pagesBuffer_);
@@ -290,6 +280,7 @@ void GlRenderer::shade() {
         glUniform1ui(kBank, bank);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
+    glDisable(GL_SCISSOR_TEST);
     const GLuint nobody[] = {0, 0, 0, 0};
     glClearNamedFramebufferuiv(visibleFramebuffer_, GL_COLOR, 0, nobody);
     slots_.clear();
@@ -316,7 +307,8 @@ void GlRenderer::useShadingProgram() {
     glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
     glUniformMatrix3fv(kToDirection, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toDirection)));
     glUniform1f(kNear, static_cast<float>(view_.near));
-    glUniform2f(kTileOrigin, static_cast<float>(view_.tile.x), static_cast<float>(view_.tile.y));
+    glUniform2f(kTileOrigin, static_cast<float>(tile_.x), static_cast<float>(tile_.y));
+    glUniform2i(kInBlock, tile_.x - block_.x, tile_.y - block_.y);
     if (variant & kShadeDepth) glUniform1f(kStepSize, static_cast<float>(std::ldexp(1.0, look_.stepExponent)));
     if (variant & kShadeRamp) {
         const double low = view_.eye.to(look_.bounds.min).z, high = view_.eye.to(look_.bounds.max).z;
@@ -342,8 +334,20 @@ DepthImage GlRenderer::readDepth() {
 
 }  // namespace
 
-Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, const SceneLook& look) {
-    auto renderer = std::make_unique<GlRenderer>(width, height, look);
+std::vector<Block> blocksOf(const PixelRect& tile) {
+    std::vector<Block> blocks;
+    const int right = tile.x + tile.width, bottom = tile.y + tile.height;
+    for (int y = tile.y / kBlockEdge * kBlockEdge; y < bottom; y += kBlockEdge)
+        for (int x = tile.x / kBlockEdge * kBlockEdge; x < right; x += kBlockEdge) {
+            const int left = std::max(x, tile.x), top = std::max(y, tile.y);
+            const int width = std::min(x + kBlockEdge, right) - left, height = std::min(y + kBlockEdge, bottom) - top;
+            blocks.push_back({x, y, {left, top, width, height}});
+        }
+    return blocks;
+}
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const PixelRect& tile, const SceneLook& look) {
+    auto renderer = std::make_unique<GlRenderer>(tile, look);
     RETURN_IF_ERROR(renderer->prepare());
     return std::unique_ptr<Renderer>(std::move(renderer));
 }

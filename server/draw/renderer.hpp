@@ -24,6 +24,16 @@ struct SceneLook {
     std::uint32_t background = 0;  // 0xRRGGBB, sRGB
 };
 
+// Tiles are drawn in blocks of the screen: squares that begin at multiples of kBlockEdge px, or what of them lies in the
+// tile. A rasteriser's interpolated depth depends, in its last bits, on where the framebuffer begins. Since it begins at
+// the block's corner, whatever the tile, a pixel comes out the same however the screen is cut.
+inline constexpr int kBlockEdge = 1024;
+struct Block {
+    int x = 0, y = 0;  // px of the screen: the corner that its framebuffer begins at
+    PixelRect part;    // px of the screen: what is drawn
+};
+std::vector<Block> blocksOf(const PixelRect& tile);  // px of the screen
+
 // One tile's view in one frame.
 struct TileView {
     ScreenProjection projection;  // of the tile's screen
@@ -35,10 +45,11 @@ struct TileView {
 };
 
 // Draws ranges of resident pages into an own framebuffer: reversed-Z 32-bit float depth with an infinite far plane, a
-// visibility buffer, and RGBA8 colour that each pixel gets once, when finish() is called. Needs a current GL context, on whose thread everything but the arena's memory stays.
+// visibility buffer, and RGBA8 colour that each pixel gets when finish() is called. Needs a current GL context, on whose thread everything but the arena's memory stays.
 class Renderer {
   public:
-    static Result<std::unique_ptr<Renderer>> create(int width, int height, const SceneLook& look);
+    // `tile`: px of the screen; every view's must be the same.
+    static Result<std::unique_ptr<Renderer>> create(const PixelRect& tile, const SceneLook& look);
     virtual ~Renderer() = default;
 
     // Memory for `bytes` of pages (rounded up to kArenaAlignment), mapped until the renderer goes. What fetch threads
@@ -47,6 +58,8 @@ class Renderer {
     virtual Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) = 0;
 
     virtual void beginFrame(const TileView& view) = 0;
+    // What draw() is given from here to finish() shows in this block of the tile only. All blocks make a frame.
+    virtual void beginBlock(const Block& block) = 0;
     virtual void draw(const ResidentPage& page, const PageRecord& record, std::span<const IndexRun> runs) = 0;
     // Shades what was drawn since the last time; returns when the pixels are there and no page is read any more.
     virtual void finish() = 0;

@@ -68,6 +68,7 @@ layout(location = 6) uniform mat3 toDirection;
 layout(location = 7) uniform uint bank;
 layout(location = 8) uniform float stepSize;
 layout(location = 9) uniform vec2 ramp;
+layout(location = 10) uniform ivec2 inBlock;
 layout(binding = 0) uniform usampler2D visible;
 
 struct Page {
@@ -122,7 +123,7 @@ vec3 rampColor(float height) {
 }
 
 void main() {
-    uint id = texelFetch(visible, ivec2(gl_FragCoord.xy), 0).r;
+    uint id = texelFetch(visible, ivec2(gl_FragCoord.xy) + inBlock, 0).r;
     if (id == 0u) discard;
     uint slot = (id >> 16) - 1u;
     if (pages[slot].bank != bank) discard;

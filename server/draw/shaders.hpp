@@ -29,6 +29,7 @@ enum UniformLocation : std::int32_t {
     kBank = 7,         // uint: the arena's bank that is bound
     kStepSize = 8,     // float, model units
     kRamp = 9,         // vec2: height (from the eye, steps) where the ramp begins, and 1 / its length
+    kInBlock = 10,     // ivec2: the tile's origin less the block's, px
 };
 
 // What the second pass knows of a page, by slot; std430.

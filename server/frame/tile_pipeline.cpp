@@ -93,7 +93,7 @@ Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& datase
                                                            const Settings& settings) {
     std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile));
     const PixelRect& rect = wall.tiles[tile].onScreen;
-    ASSIGN_OR_RETURN(pipeline->renderer_, Renderer::create(rect.width, rect.height, lookOf(dataset, settings)));
+    ASSIGN_OR_RETURN(pipeline->renderer_, Renderer::create(rect, lookOf(dataset, settings)));
     ASSIGN_OR_RETURN(const std::uint64_t bytes, arenaBytes(dataset.hierarchy, settings.cacheBytes));
     ASSIGN_OR_RETURN(std::vector<std::span<std::byte>> memory, pipeline->renderer_->lendArena(bytes));
     ASSIGN_OR_RETURN(std::vector<std::unique_ptr<RandomAccessFile>> files, openPageFiles(dataset));
@@ -123,26 +123,33 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
     stats.tile = static_cast<std::uint32_t>(tile_);
     Stopwatch watch;
 
-    // The snapping of vertices moves the picture by less than a pixel.
     const TileView view = viewOf(state);
-    const Frustum frustum = frustumOf(view.projection, view.tile, 1, view.near);
+    renderer_->beginFrame(view);
+    for (const Block& block : blocksOf(view.tile)) drawBlock(view, block, stats);
+
+    stats.drawMs = watch.lap() - stats.visibilityMs - stats.fetchWaitMs;
+    stats.peakRssBytes = peakRssBytes();
+    return stats;
+}
+
+void TilePipeline::drawBlock(const TileView& view, const Block& block, protocol::TileStats& stats) {
+    Stopwatch watch;
+    // The snapping of vertices moves the picture by less than a pixel.
+    const Frustum frustum = frustumOf(view.projection, block.part, 1, view.near);
     const std::vector<VisibleRanges> visible = visibility_.visible(cut_, frustum, view.eye);
-    stats.visibilityMs = watch.lap();
+    stats.visibilityMs += watch.lap();
 
     cache_->beginFrame(pagesOf(visible));
-    renderer_->beginFrame(view);
+    renderer_->beginBlock(block);
     drawPages(visible, frustum, view.eye, stats);
     renderer_->finish();
     cache_->release();
 
     const PageCache::Counters counters = cache_->counters();
-    stats.fetchWaitMs = counters.waitMs;
-    stats.drawMs = watch.lap() - counters.waitMs;
-    stats.fetchedBytes = counters.fetchedBytes;
-    stats.stalls = counters.stalls;
-    stats.badPages = counters.badPages;
-    stats.peakRssBytes = peakRssBytes();
-    return stats;
+    stats.fetchWaitMs += counters.waitMs;
+    stats.fetchedBytes += counters.fetchedBytes;
+    stats.stalls += counters.stalls;
+    stats.badPages += counters.badPages;
 }
 
 void TilePipeline::drawPages(const std::vector<VisibleRanges>& visible, const Frustum& frustum, const LatticeEye& eye,

@@ -39,6 +39,7 @@ class TilePipeline {
           visibility_(dataset.hierarchy) {}
 
     TileView viewOf(const FrameState& state) const;
+    void drawBlock(const TileView& view, const Block& block, protocol::TileStats& stats);
     void drawPages(const std::vector<VisibleRanges>& visible, const Frustum& frustum, const LatticeEye& eye,
                    protocol::TileStats& stats);
 
