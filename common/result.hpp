@@ -74,6 +74,7 @@ class [[nodiscard]] Result<void> {
     } while (false)
 
 // `ASSIGN_OR_RETURN(auto x, f())`: x is f's value, or the enclosing function ends with its error.
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot stand in parentheses
 #define IWALK_JOIN2(a, b) a##b
 #define IWALK_JOIN(a, b) IWALK_JOIN2(a, b)
 #define ASSIGN_OR_RETURN(target, expression) \
@@ -82,3 +83,4 @@ class [[nodiscard]] Result<void> {
     auto result = (expression);                         \
     if (!result.ok()) return result.error();            \
     target = std::move(result).value()
+// NOLINTEND(bugprone-macro-parentheses)
