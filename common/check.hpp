@@ -19,7 +19,7 @@ namespace iwalk::detail {
     ((condition) ? static_cast<void>(0) : ::iwalk::detail::checkFailed(__FILE__, __LINE__, #condition))
 
 // The same for comparisons, printing both operands: CHECK_OP(a, <=, b).
-#define CHECK_OP(a, op, b)                                                         \
-    (((a)op(b)) ? static_cast<void>(0)                                             \
-                : ::iwalk::detail::checkFailed(__FILE__, __LINE__,                 \
-                                               fmt::format("{} {} {}: {} against {}", #a, #op, #b, (a), (b))))
+#define CHECK_OP(a, op, b)                      \
+    (((a)op(b)) ? static_cast<void>(0)          \
+                : ::iwalk::detail::checkFailed( \
+                      __FILE__, __LINE__, fmt::format("{} {} {}: {} against {}", #a, #op, #b, (a), (b))))

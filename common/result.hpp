@@ -66,11 +66,11 @@ class [[nodiscard]] Result<void> {
 }  // namespace iwalk
 
 // Leaves the enclosing function with the error, if there is one.
-#define RETURN_IF_ERROR(expression)                              \
-    do {                                                         \
-        if (auto result_ = (expression); !result_.ok()) {        \
-            return result_.error();                              \
-        }                                                        \
+#define RETURN_IF_ERROR(expression)                       \
+    do {                                                  \
+        if (auto result_ = (expression); !result_.ok()) { \
+            return result_.error();                       \
+        }                                                 \
     } while (false)
 
 // `ASSIGN_OR_RETURN(auto x, f())`: x is f's value, or the enclosing function ends with its error.

@@ -22,7 +22,9 @@ using namespace iwalk;
 
 std::atomic<bool> stopRequested = false;
 
-void requestStop(int) { stopRequested = true; }
+void requestStop(int) {
+    stopRequested = true;
+}
 
 // Before MPI runs only its launcher's environment tells the rank.
 bool speaksForAll() {
@@ -71,8 +73,8 @@ protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& datas
     welcome.wallHeight = options.wall.height;
     for (std::size_t i = 0; i < options.wall.tiles.size(); ++i) {
         const PixelRect& rect = options.wall.tiles[i].onWall;
-        welcome.tiles.push_back({options.wall.tiles[i].name, hosts[i], static_cast<std::uint32_t>(i), rect.x, rect.y,
-                                 rect.width, rect.height});
+        welcome.tiles.push_back({options.wall.tiles[i].name, hosts[i], static_cast<std::uint32_t>(i), rect.x,
+                                 rect.y, rect.width, rect.height});
     }
     for (const SettingInfo& setting : settingTable())
         welcome.settings.push_back({setting.name, settingText(options.settings, setting.name)});
@@ -89,20 +91,22 @@ struct Rank {
 Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& dataset, const Sync& sync,
                      const std::vector<std::string>& hosts) {
     ASSIGN_OR_RETURN(rank.gl, GlContext::createHeadless());
-    ASSIGN_OR_RETURN(rank.pipeline, TilePipeline::create(dataset, options.wall, static_cast<std::size_t>(sync.rank()),
-                                                         options.settings));
+    ASSIGN_OR_RETURN(
+        rank.pipeline,
+        TilePipeline::create(dataset, options.wall, static_cast<std::size_t>(sync.rank()), options.settings));
     if (sync.rank() != 0) return {};
-    ASSIGN_OR_RETURN(rank.gateway, Gateway::listen(options.address, options.port,
-                                                   makeWelcome(options, dataset, hosts)));
+    ASSIGN_OR_RETURN(rank.gateway,
+                     Gateway::listen(options.address, options.port, makeWelcome(options, dataset, hosts)));
     return {};
 }
 
 void announce(const ServerOptions& options, const Dataset& dataset, const Rank& rank) {
     std::printf("iwalk-server: %s: %llu triangles, %s; %s\n", options.dataset.c_str(),
-                static_cast<unsigned long long>(dataset.manifest.triangles), formatBytes(dataset.bytes).c_str(),
-                rank.gl->renderer().c_str());
+                static_cast<unsigned long long>(dataset.manifest.triangles),
+                formatBytes(dataset.bytes).c_str(), rank.gl->renderer().c_str());
     std::printf("iwalk-server: wall of %dx%d px on %zu tiles, listening on %s:%u\n", options.wall.width,
-                options.wall.height, options.wall.tiles.size(), options.address.c_str(), rank.gateway->port());
+                options.wall.height, options.wall.tiles.size(), options.address.c_str(),
+                rank.gateway->port());
     std::fflush(stdout);
 }
 
@@ -114,8 +118,9 @@ int serve(Sync& sync, ServerOptions& options) {
     Rank rank;
     if (!allFine(sync, prepare(rank, options, dataset, sync, hosts))) return EXIT_FAILURE;
     if (sync.rank() == 0) announce(options, dataset, rank);
-    runFrames({sync, *rank.pipeline, rank.gateway.get(), options.wall.tiles[static_cast<std::size_t>(sync.rank())].name,
-               options.outputDirectory, nearPlane(options.settings, dataset.manifest), stopRequested});
+    runFrames({sync, *rank.pipeline, rank.gateway.get(),
+               options.wall.tiles[static_cast<std::size_t>(sync.rank())].name, options.outputDirectory,
+               nearPlane(options.settings, dataset.manifest), stopRequested});
     return EXIT_SUCCESS;
 }
 

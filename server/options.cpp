@@ -29,8 +29,9 @@ Result<void> parseListen(const std::string& text, ServerOptions& options) {
 }  // namespace
 
 CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std::string& message) {
-    CLI::App app("Draws one tile of a wall per MPI rank:\n"
-                 "  mpirun -np TILES iwalk-server --dataset DATASET --wall WALL.toml");
+    CLI::App app(
+        "Draws one tile of a wall per MPI rank:\n"
+        "  mpirun -np TILES iwalk-server --dataset DATASET --wall WALL.toml");
     app.option_defaults()->always_capture_default();
     app.set_version_flag("--version", std::string("iwalk-server ") + kVersion);
     std::string listen = kDefaultListen, present = "none";
@@ -41,7 +42,8 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
         ->type_name("FILE");
     app.add_option("--listen", listen, "where rank 0 waits for clients; port 0 takes any free one")
         ->type_name("ADDR:PORT");
-    app.add_option("--present", present, "where finished tiles go: none (clients may still capture) or file (PNG)")
+    app.add_option("--present", present,
+                   "where finished tiles go: none (clients may still capture) or file (PNG)")
         ->check(CLI::IsMember({"none", "file"}))
         ->type_name("none|file");
     app.add_option("--out", options.outputDirectory, "for --present file: writes DIR/frame-000000/TILE.png")

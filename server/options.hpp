@@ -20,13 +20,14 @@ struct ServerOptions {
     bool tilesOnly = false;             // just say how many tiles the wall has
     Settings settings;
     Wall wall;
-    std::vector<std::pair<std::string, std::string>> given;  // settings on the command line: name, value as text
+    std::vector<std::pair<std::string, std::string>>
+        given;  // settings on the command line: name, value as text
 };
 
 enum class CommandLine { run, done, wrong };
 
-// Reads the command line; texts for the reader (help, version, what is wrong) go to `message`. With `run` the options
-// are complete but for the wall file, which is read by readWallFile().
+// Reads the command line; texts for the reader (help, version, what is wrong) go to `message`. With `run` the
+// options are complete but for the wall file, which is read by readWallFile().
 CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std::string& message);
 
 // Loads the wall. Its [settings] count where the command line says nothing.

@@ -7,8 +7,8 @@
 
 namespace iwalk {
 
-// The set of (node, level) that covers the model once. Datasets hold only the full resolution so far, so a node is
-// either in the cut with its own triangles or adds nothing.
+// The set of (node, level) that covers the model once. Datasets hold only the full resolution so far, so a
+// node is either in the cut with its own triangles or adds nothing.
 struct Cut {
     std::vector<bool> drawn;  // by node
 };

@@ -16,8 +16,8 @@ struct ArenaPlace {
     std::uint64_t offset = 0, bytes = 0;
 };
 
-// Hands out parts of memory that somebody else owns (GPU buffers mapped by draw, in banks because one GL buffer may
-// not be as large as the cache). Best fit; freed neighbours join. Not for several threads at once.
+// Hands out parts of memory that somebody else owns (GPU buffers mapped by draw, in banks because one GL
+// buffer may not be as large as the cache). Best fit; freed neighbours join. Not for several threads at once.
 class Arena {
   public:
     // Every bank's size must be a multiple of `alignment` bytes, and places are.

@@ -11,9 +11,12 @@ enum VictimClass { kNotWanted = 0, kDrawn = 1, kWanted = 2 };
 
 }  // namespace
 
-PageCache::PageCache(const Hierarchy& hierarchy, std::vector<std::unique_ptr<RandomAccessFile>> files, Arena arena,
-                     unsigned fetchThreads)
-    : hierarchy_(hierarchy), files_(std::move(files)), arena_(std::move(arena)), entries_(hierarchy.pages.size()) {
+PageCache::PageCache(const Hierarchy& hierarchy, std::vector<std::unique_ptr<RandomAccessFile>> files,
+                     Arena arena, unsigned fetchThreads)
+    : hierarchy_(hierarchy),
+      files_(std::move(files)),
+      arena_(std::move(arena)),
+      entries_(hierarchy.pages.size()) {
     for (const PageRecord& page : hierarchy.pages) CHECK_OP(pageLayout(page).bytes, <=, arena_.largestBank());
     for (unsigned i = 0; i < std::max(1u, fetchThreads); ++i) threads_.emplace_back([this] { fetchLoop(); });
 }
@@ -58,7 +61,8 @@ PageCache::Next PageCache::next() {
         const auto start = std::chrono::steady_clock::now();
         ++counters_.stalls;
         arrival_.wait(lock, [&] { return arrived() || stuck(); });
-        counters_.waitMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        counters_.waitMs +=
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         if (!arrived()) return {Answer::full, {}};
     }
     ++drawCursor_;
@@ -102,8 +106,8 @@ std::optional<std::uint32_t> PageCache::nextAbsent() {
     return std::nullopt;
 }
 
-// A free place of `bytes`, evicting what may give way to the page at `position`; nothing when all that is left is
-// pinned, being loaded, or wanted earlier.
+// A free place of `bytes`, evicting what may give way to the page at `position`; nothing when all that is
+// left is pinned, being loaded, or wanted earlier.
 std::optional<ArenaPlace> PageCache::makeRoom(std::uint64_t bytes, std::uint32_t position) {
     while (true) {
         if (std::optional<ArenaPlace> place = arena_.allocate(bytes)) return place;

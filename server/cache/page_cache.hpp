@@ -24,11 +24,11 @@ struct ResidentPage {
 
 // The geometry cache: pages of a dataset, decoded into an arena of bounded size by fetch threads.
 //
-// A frame names the pages that it wants and takes them in that order, whatever is resident already, so what is drawn
-// does not depend on timing. A frame may want more than fits: it is then drawn in batches, giving drawn pages back with
-// release() when next() asks for it. Memory is taken first from pages that the frame does not want (longest unused
-// first), then from drawn ones (last drawn first: the next frame will want the first ones first), then from those that
-// come last in the frame. Owned and called by the drawing thread.
+// A frame names the pages that it wants and takes them in that order, whatever is resident already, so what
+// is drawn does not depend on timing. A frame may want more than fits: it is then drawn in batches, giving
+// drawn pages back with release() when next() asks for it. Memory is taken first from pages that the frame
+// does not want (longest unused first), then from drawn ones (last drawn first: the next frame will want the
+// first ones first), then from those that come last in the frame. Owned and called by the drawing thread.
 class PageCache {
   public:
     // What the pages of one frame cost.
@@ -40,23 +40,24 @@ class PageCache {
         double waitMs = 0;           // time spent waiting in next()
     };
 
-    // `files` are the dataset's page files, in the manifest's order. Every page must fit in the arena's largest bank.
+    // `files` are the dataset's page files, in the manifest's order. Every page must fit in the arena's
+    // largest bank.
     PageCache(const Hierarchy& hierarchy, std::vector<std::unique_ptr<RandomAccessFile>> files, Arena arena,
               unsigned fetchThreads);
     ~PageCache();
     PageCache(const PageCache&) = delete;
     PageCache& operator=(const PageCache&) = delete;
 
-    // Begins a frame that will take `pages` (each once) with next(), in this order. All handed out before must have
-    // been released.
+    // Begins a frame that will take `pages` (each once) with next(), in this order. All handed out before
+    // must have been released.
     void beginFrame(std::vector<std::uint32_t> pages);
 
     enum class Answer {
         page,     // `page` is the next one
-        skipped,  // the next page cannot be read (said once in the log, tried again in the next frame that wants it):
-                  // the frame goes on without it
-        full,     // drawn pages hold all the memory: release() them, then ask again
-        end,      // no more pages in this frame
+        skipped,  // the next page cannot be read (said once in the log, tried again in the next frame that
+                  // wants it): the frame goes on without it
+        full,  // drawn pages hold all the memory: release() them, then ask again
+        end,   // no more pages in this frame
     };
     struct Next {
         Answer answer = Answer::end;
@@ -88,7 +89,8 @@ class PageCache {
     std::optional<ArenaPlace> makeRoom(std::uint64_t bytes, std::uint32_t position);
     std::optional<ArenaPlace> waitForRoom(std::uint32_t page, std::unique_lock<std::mutex>& lock);
     void load(std::uint32_t page, std::unique_lock<std::mutex>& lock, std::vector<std::byte>& buffer);
-    Result<PageTable> readPage(std::uint32_t page, std::vector<std::byte>& buffer, std::span<std::byte> out) const;
+    Result<PageTable> readPage(std::uint32_t page, std::vector<std::byte>& buffer,
+                               std::span<std::byte> out) const;
     void makeEvictable(std::uint32_t page);
 
     const Hierarchy& hierarchy_;

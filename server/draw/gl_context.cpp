@@ -2,8 +2,8 @@
 
 #include "server/draw/gl_context.hpp"
 
-#include <epoxy/gl.h>
 #include <epoxy/egl.h>
+#include <epoxy/gl.h>
 
 #include <vector>
 
@@ -40,7 +40,8 @@ std::vector<EGLDisplay> headlessDisplays() {
             displays.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
     }
     if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-        displays.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+        displays.push_back(
+            eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
     return displays;
 }
 
@@ -66,7 +67,8 @@ Result<std::unique_ptr<GlContext>> GlContext::createHeadless() {
             return std::unique_ptr<GlContext>(std::make_unique<EglContext>(display, context));
         eglTerminate(display);
     }
-    return fail("no headless OpenGL 4.5 to be had through EGL: install a driver (Debian: libgl1-mesa-dri libegl1)");
+    return fail(
+        "no headless OpenGL 4.5 to be had through EGL: install a driver (Debian: libgl1-mesa-dri libegl1)");
 }
 
 }  // namespace iwalk

@@ -1,5 +1,6 @@
-// Tiles of one screen come out pixel by pixel as one big render would: all tiles use the screen's own projection, with
-// window positions snapped in the vertex shader, and a viewport that begins whole pixels away (docs/architecture.md).
+// Tiles of one screen come out pixel by pixel as one big render would: all tiles use the screen's own
+// projection, with window positions snapped in the vertex shader, and a viewport that begins whole pixels
+// away (docs/architecture.md).
 
 #include "server/draw/renderer.hpp"
 
@@ -20,11 +21,11 @@ namespace {
 // One GL buffer at the most; offsets into it must fit in 31 bits.
 constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
-constexpr int kMaxWindow = 16384;  // px: GL 4.5's least largest viewport
+constexpr int kMaxWindow = 16384;         // px: GL 4.5's least largest viewport
 
-// The square of the screen that clip space spans while a block is drawn. Its edge is a power of two, so that transforms
-// are exact. Screens wider than the largest viewport have a window for each strip of half that size; like blocks, strips
-// belong to the screen and not to the tile.
+// The square of the screen that clip space spans while a block is drawn. Its edge is a power of two, so that
+// transforms are exact. Screens wider than the largest viewport have a window for each strip of half that
+// size; like blocks, strips belong to the screen and not to the tile.
 struct Window {
     int x = 0, y = 0, edge = 0;  // px of the screen
 };
@@ -33,7 +34,9 @@ Window windowFor(const TileView& view, const Block& block) {
     const int longest = std::max(view.screenWidth, view.screenHeight);
     const int edge = std::min(kMaxWindow, static_cast<int>(std::bit_ceil(static_cast<unsigned>(longest))));
     const int strip = edge / 2;
-    const auto start = [&](int from, int screen) { return screen <= edge ? 0 : from / strip * strip - strip / 2; };
+    const auto start = [&](int from, int screen) {
+        return screen <= edge ? 0 : from / strip * strip - strip / 2;
+    };
     return {start(block.x, view.screenWidth), start(block.y, view.screenHeight), edge};
 }
 static_assert(kMaxWindow / 2 % kBlockEdge == 0);
@@ -100,9 +103,11 @@ GLuint makeVertexArray(GLint components) {
 GlRenderer::~GlRenderer() {
     for (const GLuint program : visibilityPrograms_) glDeleteProgram(program);
     for (const GLuint program : shadingPrograms_) glDeleteProgram(program);
-    for (const GLuint array : {vertexArrays_[0], vertexArrays_[1], emptyArray_}) glDeleteVertexArrays(1, &array);
+    for (const GLuint array : {vertexArrays_[0], vertexArrays_[1], emptyArray_})
+        glDeleteVertexArrays(1, &array);
     for (const GLuint texture : {visible_, depthBuffer_, color_, eyeDepth_}) glDeleteTextures(1, &texture);
-    for (const GLuint framebuffer : {visibleFramebuffer_, framebuffer_, captureFramebuffer_}) glDeleteFramebuffers(1, &framebuffer);
+    for (const GLuint framebuffer : {visibleFramebuffer_, framebuffer_, captureFramebuffer_})
+        glDeleteFramebuffers(1, &framebuffer);
     glDeleteBuffers(1, &pagesBuffer_);
     glDeleteBuffers(static_cast<GLsizei>(banks_.size()), banks_.data());
 }
@@ -111,8 +116,9 @@ Result<void> GlRenderer::prepare() {
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (width_ > largest || height_ > largest)
-        return fail("a tile of {}x{} px is larger than this GL draws ({} px): cut the wall into smaller tiles", width_,
-                    height_, largest);
+        return fail(
+            "a tile of {}x{} px is larger than this GL draws ({} px): cut the wall into smaller tiles",
+            width_, height_, largest);
     RETURN_IF_ERROR(makeFramebuffers());
     for (const bool wide : {false, true}) {
         ASSIGN_OR_RETURN(visibilityPrograms_[wide], compileVisibilityProgram(wide));
@@ -135,7 +141,8 @@ Result<void> GlRenderer::makeFramebuffers() {
     }
     visible_ = makeTexture(GL_R32UI, blockWidth, blockHeight);
     for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-        glTextureParameteri(visible_, filter, GL_NEAREST);  // integers cannot be filtered: without this nothing is read
+        glTextureParameteri(visible_, filter,
+                            GL_NEAREST);  // integers cannot be filtered: without this nothing is read
     depthBuffer_ = makeTexture(GL_DEPTH_COMPONENT32F, blockWidth, blockHeight);
     color_ = makeTexture(GL_RGBA8, width_, height_);
     glCreateFramebuffers(1, &visibleFramebuffer_);
@@ -152,9 +159,10 @@ Result<void> GlRenderer::makeFramebuffers() {
 Result<std::vector<std::span<std::byte>>> GlRenderer::lendArena(std::uint64_t bytes) {
     GLint64 largest = 0;  // that the second pass can read as one
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
-    const std::uint64_t bank = std::min(kMaxBankBytes, static_cast<std::uint64_t>(largest)) / kArenaAlignment *
-                               kArenaAlignment;
-    constexpr GLbitfield kAccess = GL_MAP_WRITE_BIT | GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+    const std::uint64_t bank =
+        std::min(kMaxBankBytes, static_cast<std::uint64_t>(largest)) / kArenaAlignment * kArenaAlignment;
+    constexpr GLbitfield kAccess =
+        GL_MAP_WRITE_BIT | GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
     std::vector<std::span<std::byte>> memory;
     bytes = std::max(bytes, kArenaAlignment);
     for (std::uint64_t left = (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment; left > 0;) {
@@ -164,7 +172,8 @@ Result<std::vector<std::span<std::byte>>> GlRenderer::lendArena(std::uint64_t by
         banks_.push_back(buffer);
         glNamedBufferStorage(buffer, static_cast<GLsizeiptr>(size), nullptr, kAccess);
         void* mapped = glMapNamedBufferRange(buffer, 0, static_cast<GLsizeiptr>(size), kAccess);
-        if (!mapped) return fail("the GL has no {} for the geometry cache: lower --cache", formatBytes(bytes));
+        if (!mapped)
+            return fail("the GL has no {} for the geometry cache: lower --cache", formatBytes(bytes));
         memory.emplace_back(static_cast<std::byte*>(mapped), size);
         left -= size;
     }
@@ -177,7 +186,9 @@ void GlRenderer::beginFrame(const TileView& view) {
     if (view.captureDepth && captureFramebuffer_ == 0) addDepthTarget();
     shaded_ = view.captureDepth ? captureFramebuffer_ : framebuffer_;
 
-    const auto channel = [&](int shift) { return static_cast<float>((look_.background >> shift) & 255) / 255; };
+    const auto channel = [&](int shift) {
+        return static_cast<float>((look_.background >> shift) & 255) / 255;
+    };
     const float background[] = {channel(16), channel(8), channel(0), 1};
     const float nothing[] = {0, 0, 0, 0};
     glClearNamedFramebufferfv(shaded_, GL_COLOR, 0, background);
@@ -243,14 +254,17 @@ void GlRenderer::draw(const ResidentPage& page, const PageRecord& record, std::s
     }
 }
 
-std::uint32_t GlRenderer::addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
-                                  const glm::dvec3& origin) {
-    const auto word = [&](std::uint32_t stream) { return static_cast<std::uint32_t>((page.place.offset + stream) / 4); };
-    slots_.push_back({{origin.x, origin.y, origin.z, 0},
-                      {word(layout.positions), word(layout.colors), word(layout.normals), word(layout.indices)},
-                      page.place.bank,
-                      record.flags & kPageWide ? 1u : 0u,
-                      {}});
+std::uint32_t GlRenderer::addSlot(const ResidentPage& page, const PageRecord& record,
+                                  const PageLayout& layout, const glm::dvec3& origin) {
+    const auto word = [&](std::uint32_t stream) {
+        return static_cast<std::uint32_t>((page.place.offset + stream) / 4);
+    };
+    slots_.push_back(
+        {{origin.x, origin.y, origin.z, 0},
+         {word(layout.positions), word(layout.colors), word(layout.normals), word(layout.indices)},
+         page.place.bank,
+         record.flags & kPageWide ? 1u : 0u,
+         {}});
     return static_cast<std::uint32_t>(slots_.size() - 1);
 }
 
@@ -259,11 +273,12 @@ void GlRenderer::finish() {
     glFinish();
 }
 
-// Every pixel whose nearest surface was drawn since the last time gets its colour, while the pages are still there. A
-// pixel that a later batch covers is shaded again then.
+// Every pixel whose nearest surface was drawn since the last time gets its colour, while the pages are still
+// there. A pixel that a later batch covers is shaded again then.
 void GlRenderer::shade() {
     if (slots_.empty()) return;
-    glNamedBufferSubData(pagesBuffer_, 0, static_cast<GLsizeiptr>(slots_.size() * sizeof(ShadedPage)), slots_.data());
+    glNamedBufferSubData(pagesBuffer_, 0, static_cast<GLsizeiptr>(slots_.size() * sizeof(ShadedPage)),
+                         slots_.data());
     glBindFramebuffer(GL_FRAMEBUFFER, shaded_);
     glViewport(0, 0, width_, height_);
     glDisable(GL_DEPTH_TEST);
@@ -291,7 +306,8 @@ std::uint32_t GlRenderer::shadingVariant() const {
     std::uint32_t variant = 0;
     if (view_.captureDepth) variant |= kShadeDepth;
     if (look_.normals && look_.shading != Shading::flat) variant |= kShadeSmooth;
-    if (look_.ramp == Ramp::height || (look_.ramp == Ramp::automatic && !look_.colors)) return variant | kShadeRamp;
+    if (look_.ramp == Ramp::height || (look_.ramp == Ramp::automatic && !look_.colors))
+        return variant | kShadeRamp;
     if (look_.colors) variant |= kShadeColors;
     return variant;
 }
@@ -309,7 +325,8 @@ void GlRenderer::useShadingProgram() {
     glUniform1f(kNear, static_cast<float>(view_.near));
     glUniform2f(kTileOrigin, static_cast<float>(tile_.x), static_cast<float>(tile_.y));
     glUniform2i(kInBlock, tile_.x - block_.x, tile_.y - block_.y);
-    if (variant & kShadeDepth) glUniform1f(kStepSize, static_cast<float>(std::ldexp(1.0, look_.stepExponent)));
+    if (variant & kShadeDepth)
+        glUniform1f(kStepSize, static_cast<float>(std::ldexp(1.0, look_.stepExponent)));
     if (variant & kShadeRamp) {
         const double low = view_.eye.to(look_.bounds.min).z, high = view_.eye.to(look_.bounds.max).z;
         glUniform2f(kRamp, static_cast<float>(low), static_cast<float>(1 / std::max(1.0, high - low)));
@@ -340,7 +357,8 @@ std::vector<Block> blocksOf(const PixelRect& tile) {
     for (int y = tile.y / kBlockEdge * kBlockEdge; y < bottom; y += kBlockEdge)
         for (int x = tile.x / kBlockEdge * kBlockEdge; x < right; x += kBlockEdge) {
             const int left = std::max(x, tile.x), top = std::max(y, tile.y);
-            const int width = std::min(x + kBlockEdge, right) - left, height = std::min(y + kBlockEdge, bottom) - top;
+            const int width = std::min(x + kBlockEdge, right) - left,
+                      height = std::min(y + kBlockEdge, bottom) - top;
             blocks.push_back({x, y, {left, top, width, height}});
         }
     return blocks;

@@ -16,17 +16,18 @@ namespace iwalk {
 
 // What a renderer needs to know of a dataset and stays the same from frame to frame.
 struct SceneLook {
-    int stepExponent = 0;          // one lattice step is 2^stepExponent model units
-    LatticeBox bounds;             // of the content, for the ramp
+    int stepExponent = 0;                  // one lattice step is 2^stepExponent model units
+    LatticeBox bounds;                     // of the content, for the ramp
     bool colors = false, normals = false;  // what its pages have
     Shading shading = Shading::automatic;
     Ramp ramp = Ramp::automatic;
     std::uint32_t background = 0;  // 0xRRGGBB, sRGB
 };
 
-// Tiles are drawn in blocks of the screen: squares that begin at multiples of kBlockEdge px, or what of them lies in the
-// tile. A rasteriser's interpolated depth depends, in its last bits, on where the framebuffer begins. Since it begins at
-// the block's corner, whatever the tile, a pixel comes out the same however the screen is cut.
+// Tiles are drawn in blocks of the screen: squares that begin at multiples of kBlockEdge px, or what of them
+// lies in the tile. A rasteriser's interpolated depth depends, in its last bits, on where the framebuffer
+// begins. Since it begins at the block's corner, whatever the tile, a pixel comes out the same however the
+// screen is cut.
 inline constexpr int kBlockEdge = 1024;
 struct Block {
     int x = 0, y = 0;  // px of the screen: the corner that its framebuffer begins at
@@ -36,32 +37,35 @@ std::vector<Block> blocksOf(const PixelRect& tile);  // px of the screen
 
 // One tile's view in one frame.
 struct TileView {
-    ScreenProjection projection;  // of the tile's screen
+    ScreenProjection projection;            // of the tile's screen
     int screenWidth = 0, screenHeight = 0;  // px
-    PixelRect tile;               // px of the screen
+    PixelRect tile;                         // px of the screen
     LatticeEye eye;
-    double near = 0;              // steps
-    bool captureDepth = false;    // readDepth() will be asked for
+    double near = 0;            // steps
+    bool captureDepth = false;  // readDepth() will be asked for
 };
 
-// Draws ranges of resident pages into an own framebuffer: reversed-Z 32-bit float depth with an infinite far plane, a
-// visibility buffer, and RGBA8 colour that each pixel gets when finish() is called. Needs a current GL context, on whose thread everything but the arena's memory stays.
+// Draws ranges of resident pages into an own framebuffer: reversed-Z 32-bit float depth with an infinite far
+// plane, a visibility buffer, and RGBA8 colour that each pixel gets when finish() is called. Needs a current
+// GL context, on whose thread everything but the arena's memory stays.
 class Renderer {
   public:
     // `tile`: px of the screen; every view's must be the same.
     static Result<std::unique_ptr<Renderer>> create(const PixelRect& tile, const SceneLook& look);
     virtual ~Renderer() = default;
 
-    // Memory for `bytes` of pages (rounded up to kArenaAlignment), mapped until the renderer goes. What fetch threads
-    // write there the GPU reads in place.
+    // Memory for `bytes` of pages (rounded up to kArenaAlignment), mapped until the renderer goes. What fetch
+    // threads write there the GPU reads in place.
     static constexpr std::uint64_t kArenaAlignment = 256;
     virtual Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) = 0;
 
     virtual void beginFrame(const TileView& view) = 0;
-    // What draw() is given from here to finish() shows in this block of the tile only. All blocks make a frame.
+    // What draw() is given from here to finish() shows in this block of the tile only. All blocks make a
+    // frame.
     virtual void beginBlock(const Block& block) = 0;
     virtual void draw(const ResidentPage& page, const PageRecord& record, std::span<const IndexRun> runs) = 0;
-    // Shades what was drawn since the last time; returns when the pixels are there and no page is read any more.
+    // Shades what was drawn since the last time; returns when the pixels are there and no page is read any
+    // more.
     virtual void finish() = 0;
 
     virtual ColorImage readColor() = 0;

@@ -14,12 +14,13 @@ uvec3 unpackNarrow(uvec2 p) {
 }
 )";
 
-// Integer page origin (from the eye's cell, in double) plus integer offset, then one conversion to float: a vertex that
-// two pages share has one eye-space position, bit for bit.
+// Integer page origin (from the eye's cell, in double) plus integer offset, then one conversion to float: a
+// vertex that two pages share has one eye-space position, bit for bit.
 //
-// The perspective division is done here, so that window positions can be snapped to 1/256 px of the screen, the grid of
-// GL's rasteriser. Clip space spans a square of the screen whose edge is a power of two of px, so the viewport
-// transform is exact, and every tile of a screen sees the same window positions but for whole pixels.
+// The perspective division is done here, so that window positions can be snapped to 1/256 px of the screen,
+// the grid of GL's rasteriser. Clip space spans a square of the screen whose edge is a power of two of px, so
+// the viewport transform is exact, and every tile of a screen sees the same window positions but for whole
+// pixels.
 const char* const kVertex = R"(
 layout(location = 0) uniform mat3 toPixels;
 layout(location = 1) uniform float near;
@@ -58,8 +59,8 @@ void main() {
 }
 )";
 
-// Nothing is interpolated: the triangle is looked up, and everything is computed from its corners and the pixel's place
-// on the screen, so that a pixel comes out the same on whatever tile it lies.
+// Nothing is interpolated: the triangle is looked up, and everything is computed from its corners and the
+// pixel's place on the screen, so that a pixel comes out the same on whatever tile it lies.
 const char* const kShadingFragment = R"(
 layout(location = 0) uniform mat3 toPixels;
 layout(location = 1) uniform float near;
@@ -207,9 +208,12 @@ Result<GLuint> link(GLuint vertex, GLuint fragment) {
     return fail("the GL does not link iWalk's shaders: {}", log);
 }
 
-std::string define(const char* name, bool value) { return fmt::format("#define {} {}\n", name, value ? 1 : 0); }
+std::string define(const char* name, bool value) {
+    return fmt::format("#define {} {}\n", name, value ? 1 : 0);
+}
 
-Result<std::uint32_t> compile(const std::string& defines, const char* vertexSource, const char* fragmentSource) {
+Result<std::uint32_t> compile(const std::string& defines, const char* vertexSource,
+                              const char* fragmentSource) {
     const std::string preamble = "#version 450 core\n" + defines + kOffsets;
     ASSIGN_OR_RETURN(const GLuint vertex, compileStage(GL_VERTEX_SHADER, preamble + vertexSource));
     ASSIGN_OR_RETURN(const GLuint fragment, compileStage(GL_FRAGMENT_SHADER, preamble + fragmentSource));

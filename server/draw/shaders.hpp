@@ -4,8 +4,9 @@
 
 #include "common/result.hpp"
 
-// A frame is drawn in two passes. The first rasterises pages into a visibility buffer: for each pixel the nearest
-// triangle's number, (slot of its page + 1) << 16 | triangle in the page, or 0. The second shades each pixel once.
+// A frame is drawn in two passes. The first rasterises pages into a visibility buffer: for each pixel the
+// nearest triangle's number, (slot of its page + 1) << 16 | triangle in the page, or 0. The second shades
+// each pixel once.
 namespace iwalk {
 
 // What a shading program is compiled for: bits.
@@ -19,9 +20,9 @@ enum ShadingVariant : std::uint32_t {
 
 // Where the uniforms are; the same in all programs that have them.
 enum UniformLocation : std::int32_t {
-    kToPixels = 0,     // mat3
-    kNear = 1,         // float, steps
-    kWindow = 2,       // vec3: centre (px of the screen) and half edge (px) of the square that clip space spans
+    kToPixels = 0,  // mat3
+    kNear = 1,      // float, steps
+    kWindow = 2,    // vec3: centre (px of the screen) and half edge (px) of the square that clip space spans
     kPageOrigin = 3,   // dvec3, from the eye, steps
     kFirstId = 4,      // uint: the number of the draw's first triangle
     kTileOrigin = 5,   // vec2, px of the screen
@@ -37,7 +38,7 @@ struct ShadedPage {
     double origin[4];          // from the eye, steps; the last is unused
     std::uint32_t streams[4];  // where positions, colours, normals, indices begin: 32-bit words into the bank
     std::uint32_t bank;
-    std::uint32_t wide;        // 1: positions as 3 x 32 bits
+    std::uint32_t wide;  // 1: positions as 3 x 32 bits
     std::uint32_t unused[2];
 };
 static_assert(sizeof(ShadedPage) == 64);

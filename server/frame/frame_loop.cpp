@@ -19,7 +19,8 @@ class FrameLoop {
     ~FrameLoop() { parts_.sync.setIdleWork({}); }
 
     void run() {
-        for (FrameState state = nextState(); state.command != FrameState::quit; state = nextState()) drawFrame(state);
+        for (FrameState state = nextState(); state.command != FrameState::quit; state = nextState())
+            drawFrame(state);
     }
 
   private:
@@ -57,7 +58,9 @@ FrameState FrameLoop::waitForRequest() {
         state.command = FrameState::quit;
         return state;
     }
-    const auto copy = [](const glm::dvec3& from, double (&to)[3]) { to[0] = from.x, to[1] = from.y, to[2] = from.z; };
+    const auto copy = [](const glm::dvec3& from, double(&to)[3]) {
+        to[0] = from.x, to[1] = from.y, to[2] = from.z;
+    };
     state.flags = request->flags;
     state.frame = frame_;
     state.sequence = request->sequence;
@@ -86,7 +89,8 @@ void FrameLoop::present(const FrameState& state) {
     picture.sequence = state.sequence;
     picture.capture = capture;
     if (!parts_.outputDirectory.empty())
-        picture.file = fmt::format("{}/frame-{:06}/{}.png", parts_.outputDirectory, state.frame, parts_.tileName);
+        picture.file =
+            fmt::format("{}/frame-{:06}/{}.png", parts_.outputDirectory, state.frame, parts_.tileName);
     picture.color = parts_.pipeline.renderer().readColor();
     if (state.flags & protocol::kCaptureDepth) picture.depth = parts_.pipeline.renderer().readDepth();
     writer_.put(std::move(picture));
@@ -106,18 +110,22 @@ void FrameLoop::report(const FrameState& state, protocol::TileStats stats, Clock
     passCapturesOn();
 }
 
-// Captures go from this rank's writer to rank 0, and from there through the gateway, whenever a wait leaves time.
+// Captures go from this rank's writer to rank 0, and from there through the gateway, whenever a wait leaves
+// time.
 void FrameLoop::passCapturesOn() {
     const auto tile = static_cast<std::uint32_t>(parts_.sync.rank());
     for (EncodedTile& encoded : writer_.encoded())
         parts_.sync.sendToRank0({encoded.sequence, tile, encoded.kind, std::move(encoded.bytes)});
     for (CapturedTile& captured : parts_.sync.poll())
         if (parts_.gateway)
-            parts_.gateway->tileImage({captured.sequence, captured.tile, captured.kind, std::move(captured.bytes)});
+            parts_.gateway->tileImage(
+                {captured.sequence, captured.tile, captured.kind, std::move(captured.bytes)});
 }
 
 }  // namespace
 
-void runFrames(const FrameLoopParts& parts) { FrameLoop(parts).run(); }
+void runFrames(const FrameLoopParts& parts) {
+    FrameLoop(parts).run();
+}
 
 }  // namespace iwalk

@@ -13,15 +13,15 @@ namespace iwalk {
 struct FrameLoopParts {
     Sync& sync;
     TilePipeline& pipeline;
-    Gateway* gateway = nullptr;        // on rank 0
+    Gateway* gateway = nullptr;  // on rank 0
     std::string tileName;
-    std::string outputDirectory;       // --present file: where tiles are written; empty: nowhere
-    double near = 0;                   // model units
-    const std::atomic<bool>& stop;     // rank 0 ends the wall when it is set
+    std::string outputDirectory;    // --present file: where tiles are written; empty: nowhere
+    double near = 0;                // model units
+    const std::atomic<bool>& stop;  // rank 0 ends the wall when it is set
 };
 
-// The way of a frame, again and again: frame state from the gateway (rank 0) to all ranks, draw, meet at the barrier,
-// present, report. Nothing is drawn while no client asks for anything new.
+// The way of a frame, again and again: frame state from the gateway (rank 0) to all ranks, draw, meet at the
+// barrier, present, report. Nothing is drawn while no client asks for anything new.
 void runFrames(const FrameLoopParts& parts);
 
 }  // namespace iwalk

@@ -14,9 +14,9 @@ struct FrameState {
     std::uint32_t magic = kMagic;
     std::uint32_t version = kVersion;
     std::uint32_t command = draw;
-    std::uint32_t flags = 0;     // protocol::FrameFlags: what is captured for the client
-    std::uint64_t frame = 0;     // counts from 0
-    std::uint64_t sequence = 0;  // of the request, for its answer
+    std::uint32_t flags = 0;                         // protocol::FrameFlags: what is captured for the client
+    std::uint64_t frame = 0;                         // counts from 0
+    std::uint64_t sequence = 0;                      // of the request, for its answer
     double eye[3] = {}, target[3] = {}, up[3] = {};  // model units
     double fovY = 0;                                 // degrees, of the whole wall
     double near = 0;                                 // model units

@@ -31,7 +31,7 @@ std::uint64_t peakRssBytes() {
 }
 
 Camera cameraOf(const FrameState& state) {
-    const auto vector = [](const double (&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
+    const auto vector = [](const double(&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
     return {vector(state.eye), vector(state.target), vector(state.up), state.fovY};
 }
 
@@ -51,15 +51,16 @@ Result<std::uint64_t> arenaBytes(const Hierarchy& hierarchy, std::uint64_t cache
         largest = std::max(largest, bytes);
     }
     if (largest > cacheBytes)
-        return fail("--cache {} is less than one page of this dataset: give {} or more", formatBytes(cacheBytes),
-                    formatBytes(largest));
+        return fail("--cache {} is less than one page of this dataset: give {} or more",
+                    formatBytes(cacheBytes), formatBytes(largest));
     return std::min(all, cacheBytes);
 }
 
 Result<std::vector<std::unique_ptr<RandomAccessFile>>> openPageFiles(const Dataset& dataset) {
     std::vector<std::unique_ptr<RandomAccessFile>> files;
     for (const DatasetFile& file : dataset.manifest.pageFiles) {
-        ASSIGN_OR_RETURN(std::unique_ptr<RandomAccessFile> opened, openForReading(dataset.path + "/" + file.name));
+        ASSIGN_OR_RETURN(std::unique_ptr<RandomAccessFile> opened,
+                         openForReading(dataset.path + "/" + file.name));
         files.push_back(std::move(opened));
     }
     return files;
@@ -89,8 +90,8 @@ Result<Dataset> openDataset(const std::string& path) {
     return dataset;
 }
 
-Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& dataset, const Wall& wall, std::size_t tile,
-                                                           const Settings& settings) {
+Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& dataset, const Wall& wall,
+                                                           std::size_t tile, const Settings& settings) {
     std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile));
     const PixelRect& rect = wall.tiles[tile].onScreen;
     ASSIGN_OR_RETURN(pipeline->renderer_, Renderer::create(rect, lookOf(dataset, settings)));
@@ -152,8 +153,8 @@ void TilePipeline::drawBlock(const TileView& view, const Block& block, protocol:
     stats.badPages += counters.badPages;
 }
 
-void TilePipeline::drawPages(const std::vector<VisibleRanges>& visible, const Frustum& frustum, const LatticeEye& eye,
-                             protocol::TileStats& stats) {
+void TilePipeline::drawPages(const std::vector<VisibleRanges>& visible, const Frustum& frustum,
+                             const LatticeEye& eye, protocol::TileStats& stats) {
     std::vector<IndexRun> runs;
     for (auto ranges = visible.begin(); ranges != visible.end();) {
         PageCache::Next next = cache_->next();
@@ -167,7 +168,8 @@ void TilePipeline::drawPages(const std::vector<VisibleRanges>& visible, const Fr
         for (; ranges != visible.end() && ranges->page == page; ++ranges) {
             if (next.answer == PageCache::Answer::skipped) continue;
             CHECK_OP(next.page.page, ==, page);
-            stats.ranges += cullRanges(*next.page.table, ranges->firstRange, ranges->rangeCount, frustum, eye, runs);
+            stats.ranges +=
+                cullRanges(*next.page.table, ranges->firstRange, ranges->rangeCount, frustum, eye, runs);
         }
         if (runs.empty()) continue;
         renderer_->draw(next.page, dataset_.hierarchy.pages[page], runs);

@@ -21,12 +21,12 @@ struct Dataset {
 };
 Result<Dataset> openDataset(const std::string& path);
 
-// From a frame state to one tile's pixels: adapt, visibility, cache, draw. Knows nothing of MPI and sockets; needs a
-// current GL context.
+// From a frame state to one tile's pixels: adapt, visibility, cache, draw. Knows nothing of MPI and sockets;
+// needs a current GL context.
 class TilePipeline {
   public:
-    static Result<std::unique_ptr<TilePipeline>> create(const Dataset& dataset, const Wall& wall, std::size_t tile,
-                                                        const Settings& settings);
+    static Result<std::unique_ptr<TilePipeline>> create(const Dataset& dataset, const Wall& wall,
+                                                        std::size_t tile, const Settings& settings);
 
     // Draws the frame completely, however long the pages take, into the renderer's framebuffer.
     protocol::TileStats draw(const FrameState& state);
@@ -35,7 +35,10 @@ class TilePipeline {
 
   private:
     TilePipeline(const Dataset& dataset, const Wall& wall, std::size_t tile)
-        : dataset_(dataset), wall_(wall), tile_(tile), cut_(fullResolution(dataset.hierarchy)),
+        : dataset_(dataset),
+          wall_(wall),
+          tile_(tile),
+          cut_(fullResolution(dataset.hierarchy)),
           visibility_(dataset.hierarchy) {}
 
     TileView viewOf(const FrameState& state) const;
@@ -52,8 +55,9 @@ class TilePipeline {
     std::unique_ptr<PageCache> cache_;  // after the renderer, whose memory it uses
 };
 
-// What near plane rank 0 puts into the frame state: the setting, or a hundred thousandth of the model's diagonal. Depth
-// precision does not depend on it (reversed, in floats), so it is small enough to be forgotten. Model units.
+// What near plane rank 0 puts into the frame state: the setting, or a hundred thousandth of the model's
+// diagonal. Depth precision does not depend on it (reversed, in floats), so it is small enough to be
+// forgotten. Model units.
 double nearPlane(const Settings& settings, const Manifest& manifest);
 
 }  // namespace iwalk

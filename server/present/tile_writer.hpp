@@ -17,7 +17,7 @@ namespace iwalk {
 // One tile's pixels of a finished frame and where they are to go.
 struct TilePicture {
     std::uint64_t frame = 0, sequence = 0;
-    std::string file;  // PNG file to write; empty: none
+    std::string file;      // PNG file to write; empty: none
     bool capture = false;  // hand the PNG (and EXR) to encoded()
     ColorImage color;
     std::optional<DepthImage> depth;
@@ -30,8 +30,8 @@ struct EncodedTile {
     std::vector<std::byte> bytes;
 };
 
-// Compresses and writes pictures on a thread of its own, so that drawing goes on. Holds at most kMaxWaiting pictures;
-// put() waits when there are more.
+// Compresses and writes pictures on a thread of its own, so that drawing goes on. Holds at most kMaxWaiting
+// pictures; put() waits when there are more.
 class TileWriter {
   public:
     static constexpr std::size_t kMaxWaiting = 3;

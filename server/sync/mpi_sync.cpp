@@ -1,5 +1,6 @@
-// The one file that calls MPI, from the drawing thread alone, on a communicator of its own. A blocking MPI call spins and
-// starves the other ranks of a box with fewer cores than ranks; so everything here is non-blocking and polled.
+// The one file that calls MPI, from the drawing thread alone, on a communicator of its own. A blocking MPI
+// call spins and starves the other ranks of a box with fewer cores than ranks; so everything here is
+// non-blocking and polled.
 
 #include <mpi.h>
 
@@ -29,7 +30,9 @@ static_assert(sizeof(TileHeader) == 24);
 static_assert(std::is_trivially_copyable_v<protocol::TileStats>);
 
 // Open MPI's own error handler ends all ranks with a message; what comes back here is only ever success.
-void must(int code) { CHECK_OP(code, ==, MPI_SUCCESS); }
+void must(int code) {
+    CHECK_OP(code, ==, MPI_SUCCESS);
+}
 
 int byteCount(std::size_t bytes) {
     CHECK_OP(bytes, <=, kMaxTileBytes);
@@ -96,7 +99,8 @@ class MpiSync : public Sync {
     std::vector<protocol::TileStats> gather(const protocol::TileStats& mine) override {
         std::vector<protocol::TileStats> all(rank_ == 0 ? static_cast<std::size_t>(size_) : 0);
         MPI_Request request;
-        must(MPI_Igather(&mine, sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, 0, world_, &request));
+        must(MPI_Igather(&mine, sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, 0, world_,
+                         &request));
         finish(request);
         return all;
     }
@@ -123,7 +127,7 @@ class MpiSync : public Sync {
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     std::function<void()> idleWork_;
-    std::list<Outgoing> outgoing_;  // a list: MPI reads the bytes where they are
+    std::list<Outgoing> outgoing_;   // a list: MPI reads the bytes where they are
     std::vector<CapturedTile> own_;  // rank 0's, which need no MPI
 };
 
@@ -178,7 +182,8 @@ std::vector<CapturedTile> MpiSync::poll() {
         std::memcpy(&header, bytes.data(), sizeof header);
         CHECK_OP(header.magic, ==, kTileMagic);
         bytes.erase(bytes.begin(), bytes.begin() + sizeof header);
-        arrived.push_back({header.sequence, header.tile, static_cast<protocol::ImageKind>(header.kind), std::move(bytes)});
+        arrived.push_back(
+            {header.sequence, header.tile, static_cast<protocol::ImageKind>(header.kind), std::move(bytes)});
     }
 }
 
@@ -190,8 +195,8 @@ void MpiSync::dropSent() {
     }
 }
 
-// MPI must not be finalised with messages under way: each rank comes to a last barrier when its tiles are gone, and
-// rank 0 takes them in meanwhile.
+// MPI must not be finalised with messages under way: each rank comes to a last barrier when its tiles are
+// gone, and rank 0 takes them in meanwhile.
 void MpiSync::drain() {
     idleWork_ = {};
     for (Patience patience; dropSent(), !outgoing_.empty();) patience.wait();
@@ -208,7 +213,8 @@ void MpiSync::drain() {
 
 Result<std::unique_ptr<Sync>> startMpi(int& argc, char**& argv) {
     int provided = MPI_THREAD_SINGLE;
-    if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS || provided < MPI_THREAD_FUNNELED)
+    if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS ||
+        provided < MPI_THREAD_FUNNELED)
         return fail("MPI does not start with threads: iwalk-server needs Open MPI (Debian: openmpi-bin)");
     return std::unique_ptr<Sync>(std::make_unique<MpiSync>());
 }

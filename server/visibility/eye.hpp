@@ -7,11 +7,12 @@
 
 namespace iwalk {
 
-// The eye on the dataset's lattice: a cell, and where in it. Positions relative to the eye are made from the integer
-// difference to `cell` first, so that they are exact however far from the origin the model lies.
+// The eye on the dataset's lattice: a cell, and where in it. Positions relative to the eye are made from the
+// integer difference to `cell` first, so that they are exact however far from the origin the model lies.
 struct LatticeEye {
     LatticePoint cell{0};
-    glm::dvec3 fraction{0};  // [0, 1) steps, a multiple of 2^-16: sums with differences up to 2^36 steps are exact
+    glm::dvec3 fraction{
+        0};  // [0, 1) steps, a multiple of 2^-16: sums with differences up to 2^36 steps are exact
 
     // `model`: model units; one lattice step is 2^stepExponent of them.
     static LatticeEye at(const glm::dvec3& model, int stepExponent) {

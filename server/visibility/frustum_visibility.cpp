@@ -7,7 +7,8 @@
 namespace iwalk {
 namespace {
 
-// The part of the box [low, high] (from the eye, steps) that lies farthest along a plane decides for all of it.
+// The part of the box [low, high] (from the eye, steps) that lies farthest along a plane decides for all of
+// it.
 bool meets(const Frustum& frustum, const glm::dvec3& low, const glm::dvec3& high) {
     const auto farthest = [&](const glm::dvec3& normal) {
         return std::max(normal.x * low.x, normal.x * high.x) + std::max(normal.y * low.y, normal.y * high.y) +
@@ -73,8 +74,8 @@ std::vector<VisibleRanges> FrustumVisibility::visible(const Cut& cut, const Frus
     return found;
 }
 
-std::uint32_t cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,
-                         const LatticeEye& eye, std::vector<IndexRun>& runs) {
+std::uint32_t cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count,
+                         const Frustum& frustum, const LatticeEye& eye, std::vector<IndexRun>& runs) {
     const glm::dvec3 origin = eye.to(table.origin);
     std::uint32_t kept = 0;
     for (std::uint32_t r = first; r < first + count; ++r) {

@@ -10,7 +10,8 @@
 
 namespace iwalk {
 
-// Ranges of one page that may be seen: [firstRange, firstRange + rangeCount), before they are culled one by one.
+// Ranges of one page that may be seen: [firstRange, firstRange + rangeCount), before they are culled one by
+// one.
 struct VisibleRanges {
     std::uint32_t page = 0, firstRange = 0, rangeCount = 0;
 };
@@ -25,9 +26,9 @@ class FrustumVisibility {
   public:
     explicit FrustumVisibility(const Hierarchy& hierarchy);  // kept by reference
 
-    // Front to back by the distance of pages' boxes from the eye; what belongs to one page stands together. The order
-    // of any two pages depends on the eye and the dataset alone, so that tiles, threads and caches draw equal depths
-    // in the same order. Frustum in lattice steps.
+    // Front to back by the distance of pages' boxes from the eye; what belongs to one page stands together.
+    // The order of any two pages depends on the eye and the dataset alone, so that tiles, threads and caches
+    // draw equal depths in the same order. Frustum in lattice steps.
     std::vector<VisibleRanges> visible(const Cut& cut, const Frustum& frustum, const LatticeEye& eye) const;
 
   private:
@@ -35,9 +36,9 @@ class FrustumVisibility {
     std::vector<LatticeBox> pageBoxes_;  // around all triangles of a page
 };
 
-// The ranges among `table.ranges[first, first + count)` whose boxes meet the frustum, neighbours joined to runs.
-// Appends to `runs`; the result is the number of ranges kept.
-std::uint32_t cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,
-                         const LatticeEye& eye, std::vector<IndexRun>& runs);
+// The ranges among `table.ranges[first, first + count)` whose boxes meet the frustum, neighbours joined to
+// runs. Appends to `runs`; the result is the number of ranges kept.
+std::uint32_t cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count,
+                         const Frustum& frustum, const LatticeEye& eye, std::vector<IndexRun>& runs);
 
 }  // namespace iwalk

@@ -2,11 +2,12 @@
 
 #include "server/wall/wall.hpp"
 
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "common/file.hpp"
 #include "common/settings.hpp"
@@ -59,7 +60,8 @@ class Table {
     Result<int> checked(const toml::node& node, const char* key, int low, int high) const {
         const std::optional<std::int64_t> value = node.value_exact<std::int64_t>();
         if (!value || *value < low || *value > high)
-            return fail("{}: '{}' wants whole numbers from {} to {}", place(path_, node.source()), key, low, high);
+            return fail("{}: '{}' wants whole numbers from {} to {}", place(path_, node.source()), key, low,
+                        high);
         return static_cast<int>(*value);
     }
 
@@ -72,8 +74,8 @@ std::vector<Tile> regularTiles(const Wall& wall) {
     std::vector<Tile> tiles;
     for (int row = 0; row < wall.rows; ++row)
         for (int column = 0; column < wall.columns; ++column) {
-            const PixelRect rect{column * (wall.tilePx.x + wall.bezelPx.x), row * (wall.tilePx.y + wall.bezelPx.y),
-                                 wall.tilePx.x, wall.tilePx.y};
+            const PixelRect rect{column * (wall.tilePx.x + wall.bezelPx.x),
+                                 row * (wall.tilePx.y + wall.bezelPx.y), wall.tilePx.x, wall.tilePx.y};
             tiles.push_back({fmt::format("tile-{}-{}", row, column), 0, rect, rect});
         }
     return tiles;
@@ -120,8 +122,8 @@ Result<Wall> interpret(const std::string& path, const toml::table& file) {
     if (!wallTable) return fail("{}:1:1: a wall file begins with a [wall] table (see config/)", path);
     for (const auto& [key, node] : file)
         if ((key != "wall" && key != "settings") || !node.is_table())
-            return fail("{}: a wall file has the tables [wall] and [settings], not '{}'", place(path, key.source()),
-                        key.str());
+            return fail("{}: a wall file has the tables [wall] and [settings], not '{}'",
+                        place(path, key.source()), key.str());
     ASSIGN_OR_RETURN(Wall wall, regularWall(path, *wallTable));
     if (const toml::table* settings = file["settings"].as_table())
         RETURN_IF_ERROR(readSettings(path, *settings, wall));

@@ -38,7 +38,8 @@ TEST(Arena, JoinsFreedNeighbours) {
     std::vector<ArenaPlace> held;
     std::vector<int> owner(bank.size() / kAlignment, -1);
     const auto mark = [&](const ArenaPlace& place, int from, int to) {
-        for (std::uint64_t i = place.offset / kAlignment; i < (place.offset + place.bytes) / kAlignment; ++i) {
+        for (std::uint64_t i = place.offset / kAlignment; i < (place.offset + place.bytes) / kAlignment;
+             ++i) {
             ASSERT_EQ(owner[i], from);
             owner[i] = to;
         }

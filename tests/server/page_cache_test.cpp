@@ -79,7 +79,8 @@ class PageCacheTest : public ::testing::Test {
             }
             if (next.answer == PageCache::Answer::skipped) continue;
             EXPECT_EQ(next.page.page, pages[i]);
-            const std::span<const std::byte> bytes(memory_.data() + next.page.place.offset, next.page.place.bytes);
+            const std::span<const std::byte> bytes(memory_.data() + next.page.place.offset,
+                                                   next.page.place.bytes);
             for (std::uint32_t v = 0; v < 3; ++v)
                 EXPECT_EQ(pageOffset(bytes, hierarchy_.pages[pages[i]], v), glm::u32vec3(pages[i], v, v * v));
         }

@@ -37,7 +37,8 @@ class RenderTest : public ::testing::Test {
     static void TearDownTestSuite() { context_.reset(); }
 
     // Builds a dataset; leaves are small so that there are many pages.
-    Dataset build(const Triangles& triangles, const PlyOptions& options = {}, std::uint32_t leafTriangles = 500) {
+    Dataset build(const Triangles& triangles, const PlyOptions& options = {},
+                  std::uint32_t leafTriangles = 500) {
         const std::string ply = directory_.path("model.ply"), path = directory_.path("dataset");
         EXPECT_TRUE(writePly(ply, triangles, options).ok());
         BuildOptions build;
@@ -80,11 +81,13 @@ double depthAgreementOf(const Dataset& dataset, const Triangles& triangles, cons
 // All triangles of an input file.
 Triangles trianglesOf(const std::string& input, const std::string& spillDirectory) {
     Triangles triangles;
-    Result<std::unique_ptr<Importer>> importer = openImporter(input, {std::uint64_t{64} << 20, spillDirectory});
+    Result<std::unique_ptr<Importer>> importer =
+        openImporter(input, {std::uint64_t{64} << 20, spillDirectory});
     EXPECT_TRUE(importer.ok());
     EXPECT_TRUE((*importer)->scan([](auto) {}, [](double) {}).ok());
     const TriangleSink sink = [&](std::span<const iwalk::Triangle> batch) {
-        for (const iwalk::Triangle& t : batch) triangles.push_back({t[0].position, t[1].position, t[2].position});
+        for (const iwalk::Triangle& t : batch)
+            triangles.push_back({t[0].position, t[1].position, t[2].position});
         return Result<void>();
     };
     EXPECT_TRUE((*importer)->triangles(sink, [](double) {}).ok());
@@ -111,7 +114,8 @@ Triangles soup(int count, PlyOptions& options) {
 
 // To the last bit of colour and depth. The pictures show something.
 void expectSame(const Picture& one, const Picture& other) {
-    const auto seen = std::count_if(one.depth.pixels.begin(), one.depth.pixels.end(), [](float z) { return z > 0; });
+    const auto seen =
+        std::count_if(one.depth.pixels.begin(), one.depth.pixels.end(), [](float z) { return z > 0; });
     EXPECT_GT(seen, static_cast<std::ptrdiff_t>(one.depth.pixels.size() / 10));
     const Comparison comparison = compare(one, other, std::nullopt);
     EXPECT_EQ(comparison.different, 0u);
@@ -150,7 +154,8 @@ TEST_F(RenderTest, FarFromTheOriginNothingShakes) {
 TEST_F(RenderTest, TheSampleHasTheRightDepths) {
     const std::string input = std::string(IWALK_CONFIG_DIR) + "/sample/interior.ply";
     const Dataset dataset = buildFile(input);
-    const Result<std::vector<Camera>> views = loadCameraPath(std::string(IWALK_CONFIG_DIR) + "/sample/views.json");
+    const Result<std::vector<Camera>> views =
+        loadCameraPath(std::string(IWALK_CONFIG_DIR) + "/sample/views.json");
     ASSERT_TRUE(views.ok()) << views.error().message;
     const Triangles triangles = trianglesOf(input, directory_.path(""));
     for (const Camera& camera : *views) EXPECT_GE(depthAgreementOf(dataset, triangles, camera), 0.999);
@@ -158,11 +163,13 @@ TEST_F(RenderTest, TheSampleHasTheRightDepths) {
 
 TEST_F(RenderTest, TilesOfTheSampleMakeOnePicture) {
     const Dataset dataset = buildFile(std::string(IWALK_CONFIG_DIR) + "/sample/interior.ply");
-    const Result<std::vector<Camera>> views = loadCameraPath(std::string(IWALK_CONFIG_DIR) + "/sample/views.json");
+    const Result<std::vector<Camera>> views =
+        loadCameraPath(std::string(IWALK_CONFIG_DIR) + "/sample/views.json");
     ASSERT_TRUE(views.ok()) << views.error().message;
     WallRenders renders(dataset, {});
     for (const Camera& camera : *views)
-        expectSame(renders.draw(wallOf(804, 604, 1, 1), camera), renders.draw(wallOf(804, 604, 4, 4), camera));
+        expectSame(renders.draw(wallOf(804, 604, 1, 1), camera),
+                   renders.draw(wallOf(804, 604, 4, 4), camera));
 }
 
 TEST_F(RenderTest, TilesOfCrossingTrianglesMakeOnePicture) {
@@ -170,7 +177,8 @@ TEST_F(RenderTest, TilesOfCrossingTrianglesMakeOnePicture) {
     const Dataset dataset = build(soup(30000, options), options);
     WallRenders renders(dataset, {});
     for (const Camera& camera : {kOutside, kInside})
-        expectSame(renders.draw(wallOf(801, 603, 1, 1), camera), renders.draw(wallOf(801, 603, 4, 4), camera));
+        expectSame(renders.draw(wallOf(801, 603, 1, 1), camera),
+                   renders.draw(wallOf(801, 603, 4, 4), camera));
 }
 
 // No viewport is that wide: however the screen is cut, the pixels are the same.
@@ -235,7 +243,8 @@ TEST_F(RenderTest, NormalsOfTheInputMakeSmoothShading) {
     for (const tools::Triangle& t : coarse)
         for (const glm::dvec3& p : t)
             ply << p.x << ' ' << p.y << ' ' << p.z << ' ' << p.x << ' ' << p.y << ' ' << p.z << '\n';
-    for (std::size_t i = 0; i < coarse.size(); ++i) ply << "3 " << 3 * i << ' ' << 3 * i + 1 << ' ' << 3 * i + 2 << '\n';
+    for (std::size_t i = 0; i < coarse.size(); ++i)
+        ply << "3 " << 3 * i << ' ' << 3 * i + 1 << ' ' << 3 * i + 2 << '\n';
     ply.close();
     const Dataset dataset = buildFile(directory_.path("smooth.ply"));
     Settings settings;

@@ -1,4 +1,5 @@
-// iwalk-tile-check: draws views of a dataset as one tile and as many, and says how many pixels differ in any way.
+// iwalk-tile-check: draws views of a dataset as one tile and as many, and says how many pixels differ in any
+// way.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -29,10 +30,11 @@ Result<bool> check(const Options& options) {
         tools::WallRenders renders(dataset, settings);
         const tools::Picture whole = renders.draw(one, views[i]);
         const tools::Comparison comparison = compare(whole, renders.draw(many, views[i]), std::nullopt);
-        std::printf("view %zu: %llu of %llu pixels differ, %llu of them in colour, by %d of 255 at the most\n", i,
-                    static_cast<unsigned long long>(comparison.different),
-                    static_cast<unsigned long long>(comparison.pixels()),
-                    static_cast<unsigned long long>(comparison.color.different), comparison.color.largestDifference);
+        std::printf(
+            "view %zu: %llu of %llu pixels differ, %llu of them in colour, by %d of 255 at the most\n", i,
+            static_cast<unsigned long long>(comparison.different),
+            static_cast<unsigned long long>(comparison.pixels()),
+            static_cast<unsigned long long>(comparison.color.different), comparison.color.largestDifference);
         good = good && comparison.different == 0;
     }
     return good;

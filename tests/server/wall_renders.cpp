@@ -9,7 +9,9 @@ namespace {
 
 FrameState stateOf(const Camera& camera, double near) {
     FrameState state;
-    const auto copy = [](const glm::dvec3& from, double (&to)[3]) { to[0] = from.x, to[1] = from.y, to[2] = from.z; };
+    const auto copy = [](const glm::dvec3& from, double(&to)[3]) {
+        to[0] = from.x, to[1] = from.y, to[2] = from.z;
+    };
     copy(camera.eye, state.eye);
     copy(camera.target, state.target);
     copy(camera.up, state.up);
@@ -35,7 +37,8 @@ Wall wallOf(int width, int height, int columns, int rows) {
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column) {
             const int left = width * column / columns, top = height * row / rows;
-            const PixelRect rect{left, top, width * (column + 1) / columns - left, height * (row + 1) / rows - top};
+            const PixelRect rect{left, top, width * (column + 1) / columns - left,
+                                 height * (row + 1) / rows - top};
             wall.tiles.push_back({fmt::format("tile-{}-{}", row, column), 0, rect, rect});
         }
     return wall;
@@ -47,7 +50,8 @@ Picture WallRenders::draw(const Wall& wall, const Camera& camera) {
     for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
         Result<std::unique_ptr<TilePipeline>> pipeline = TilePipeline::create(dataset_, wall, i, settings_);
         if (!pipeline) detail::checkFailed(__FILE__, __LINE__, pipeline.error().message);
-        const protocol::TileStats stats = (*pipeline)->draw(stateOf(camera, nearPlane(settings_, dataset_.manifest)));
+        const protocol::TileStats stats =
+            (*pipeline)->draw(stateOf(camera, nearPlane(settings_, dataset_.manifest)));
         stats_.triangles += stats.triangles;
         stats_.badPages += stats.badPages;
         stats_.fetchedBytes += stats.fetchedBytes;

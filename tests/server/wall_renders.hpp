@@ -12,7 +12,8 @@ namespace iwalk::tools {
 // A wall of columns x rows tiles that cut width x height px as evenly as whole pixels allow, no bezels.
 Wall wallOf(int width, int height, int columns, int rows);
 
-// Draws the wall tile after tile in this process, without MPI and sockets, and stitches it. Needs a current GL context.
+// Draws the wall tile after tile in this process, without MPI and sockets, and stitches it. Needs a current
+// GL context.
 class WallRenders {
   public:
     WallRenders(const Dataset& dataset, Settings settings) : dataset_(dataset), settings_(settings) {}

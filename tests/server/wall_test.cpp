@@ -56,7 +56,8 @@ TEST(Wall, ErrorsNameLineAndColumn) {
     EXPECT_THAT(errorOf("[wall]\nrows = 2\ncolumns 2\n"), HasSubstr("wall.toml:3:"));
     EXPECT_THAT(errorOf("[wall]\nrows = 2\n"), HasSubstr("has no 'columns'"));
     EXPECT_EQ(errorOf("[wall]\nrows = 0\n"), "wall.toml:2:8: 'rows' wants whole numbers from 1 to 64");
-    EXPECT_THAT(errorOf("[wall]\nrows = 1\ncolumns = 1\ntile_px = [1024]\n"), HasSubstr("wall.toml:4:11: 'tile_px'"));
+    EXPECT_THAT(errorOf("[wall]\nrows = 1\ncolumns = 1\ntile_px = [1024]\n"),
+                HasSubstr("wall.toml:4:11: 'tile_px'"));
     EXPECT_THAT(errorOf("[wall]\nrows = 1.5\n"), HasSubstr("wall.toml:2:8:"));
     EXPECT_THAT(errorOf("rows = 1\n"), HasSubstr("[wall]"));
     EXPECT_THAT(errorOf("[wall]\nrows=1\ncolumns=1\ntile_px=[1,1]\n[settings]\ncash = \"1G\"\n"),
@@ -64,7 +65,9 @@ TEST(Wall, ErrorsNameLineAndColumn) {
     EXPECT_THAT(loadWall("/nowhere/wall.toml").error().message, HasSubstr("/nowhere/wall.toml"));
 }
 
-Camera camera() { return {{3, -2, 5}, {1, 4, 2}, {0, 0.2, 1}, 47}; }
+Camera camera() {
+    return {{3, -2, 5}, {1, 4, 2}, {0, 0.2, 1}, 47};
+}
 
 Wall wallOf(int width, int height) {
     Wall wall;
@@ -100,7 +103,8 @@ TEST(Projection, FrustumAgreesWithPixels) {
     for (int i = 0; i < 20000; ++i) {
         const glm::dvec3 v(number(random), number(random), number(random));
         const glm::dvec3 q = p.toPixels * v;
-        const bool seen = q.z >= 0.1 && q.x >= 100 * q.z && q.x <= 150 * q.z && q.y >= 20 * q.z && q.y <= 100 * q.z;
+        const bool seen =
+            q.z >= 0.1 && q.x >= 100 * q.z && q.x <= 150 * q.z && q.y >= 20 * q.z && q.y <= 100 * q.z;
         bool in = glm::dot(frustum.forward, v) >= frustum.near;
         for (const glm::dvec3& plane : frustum.planes) in = in && glm::dot(plane, v) >= 0;
         EXPECT_EQ(in, seen);
@@ -111,7 +115,8 @@ TEST(Projection, FrustumAgreesWithPixels) {
 
 TEST(LatticeEye, DifferencesAreExactFarFromTheOrigin) {
     const LatticeEye eye = LatticeEye::at({1e7 + 0.125, -1e7, 0.3}, -20);
-    const glm::dvec3 v = eye.to(LatticePoint(std::int64_t{10000000} << 20, -(std::int64_t{10000000} << 20), 0));
+    const glm::dvec3 v =
+        eye.to(LatticePoint(std::int64_t{10000000} << 20, -(std::int64_t{10000000} << 20), 0));
     EXPECT_EQ(v.x, -0.125 * 0x1p20);
     EXPECT_EQ(v.y, 0);
     EXPECT_NEAR(v.z, -0.3 * 0x1p20, 0x1p-16);
