@@ -56,8 +56,8 @@ class PageCache {
         page,     // `page` is the next one
         skipped,  // the next page cannot be read (said once in the log, tried again in the next frame that
                   // wants it): the frame goes on without it
-        full,  // drawn pages hold all the memory: release() them, then ask again
-        end,   // no more pages in this frame
+        full,     // drawn pages hold all the memory: release() them, then ask again
+        end,      // no more pages in this frame
     };
     struct Next {
         Answer answer = Answer::end;

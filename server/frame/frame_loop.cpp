@@ -87,6 +87,7 @@ void FrameLoop::present(const FrameState& state) {
     TilePicture picture;
     picture.frame = state.frame;
     picture.sequence = state.sequence;
+    picture.tile = static_cast<std::uint32_t>(parts_.sync.rank());
     picture.capture = capture;
     if (!parts_.outputDirectory.empty())
         picture.file =
@@ -113,13 +114,9 @@ void FrameLoop::report(const FrameState& state, protocol::TileStats stats, Clock
 // Captures go from this rank's writer to rank 0, and from there through the gateway, whenever a wait leaves
 // time.
 void FrameLoop::passCapturesOn() {
-    const auto tile = static_cast<std::uint32_t>(parts_.sync.rank());
-    for (EncodedTile& encoded : writer_.encoded())
-        parts_.sync.sendToRank0({encoded.sequence, tile, encoded.kind, std::move(encoded.bytes)});
-    for (CapturedTile& captured : parts_.sync.poll())
-        if (parts_.gateway)
-            parts_.gateway->tileImage(
-                {captured.sequence, captured.tile, captured.kind, std::move(captured.bytes)});
+    for (protocol::TileImage& tile : writer_.encoded()) parts_.sync.sendToRank0(std::move(tile));
+    for (protocol::TileImage& tile : parts_.sync.poll())
+        if (parts_.gateway) parts_.gateway->tileImage(std::move(tile));
 }
 
 }  // namespace

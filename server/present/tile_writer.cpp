@@ -28,14 +28,9 @@ void TileWriter::put(TilePicture picture) {
     changed_.notify_all();
 }
 
-std::vector<EncodedTile> TileWriter::encoded() {
+std::vector<protocol::TileImage> TileWriter::encoded() {
     const std::lock_guard lock(mutex_);
     return std::exchange(encoded_, {});
-}
-
-bool TileWriter::idle() const {
-    const std::lock_guard lock(mutex_);
-    return waiting_.empty() && !busy_ && encoded_.empty();
 }
 
 void TileWriter::run() {
@@ -45,12 +40,10 @@ void TileWriter::run() {
         if (waiting_.empty()) return;
         const TilePicture picture = std::move(waiting_.front());
         waiting_.pop_front();
-        busy_ = true;
         changed_.notify_all();
         lock.unlock();
         process(picture);
         lock.lock();
-        busy_ = false;
     }
 }
 
@@ -58,11 +51,12 @@ void TileWriter::process(const TilePicture& picture) {
     Result<std::vector<std::byte>> png = encodePng(picture.color);
     if (!png) return spdlog::error("frame {}: {}", picture.frame, png.error().message);
     if (!picture.file.empty()) writeFile(picture.file, *png);
-    if (picture.capture) hand({picture.sequence, protocol::ImageKind::png, std::move(png).value()});
+    if (picture.capture)
+        hand({picture.sequence, picture.tile, protocol::ImageKind::png, std::move(png).value()});
     if (!picture.depth) return;
     Result<std::vector<std::byte>> exr = encodeExr(*picture.depth);
     if (!exr) return spdlog::error("frame {}: {}", picture.frame, exr.error().message);
-    hand({picture.sequence, protocol::ImageKind::exr, std::move(exr).value()});
+    hand({picture.sequence, picture.tile, protocol::ImageKind::exr, std::move(exr).value()});
 }
 
 // A picture that cannot be written costs the picture, not the wall; it is said once.
@@ -75,7 +69,7 @@ void TileWriter::writeFile(const std::string& path, const std::vector<std::byte>
         spdlog::error("{}; the wall goes on without its pictures", written.error().message);
 }
 
-void TileWriter::hand(EncodedTile tile) {
+void TileWriter::hand(protocol::TileImage tile) {
     const std::lock_guard lock(mutex_);
     encoded_.push_back(std::move(tile));
 }

@@ -17,17 +17,11 @@ namespace iwalk {
 // One tile's pixels of a finished frame and where they are to go.
 struct TilePicture {
     std::uint64_t frame = 0, sequence = 0;
-    std::string file;      // PNG file to write; empty: none
-    bool capture = false;  // hand the PNG (and EXR) to encoded()
+    std::uint32_t tile = 0;  // as in protocol::TileImage
+    std::string file;        // PNG file to write; empty: none
+    bool capture = false;    // hand the PNG (and EXR) to encoded()
     ColorImage color;
     std::optional<DepthImage> depth;
-};
-
-// A compressed capture.
-struct EncodedTile {
-    std::uint64_t sequence = 0;
-    protocol::ImageKind kind = protocol::ImageKind::png;
-    std::vector<std::byte> bytes;
 };
 
 // Compresses and writes pictures on a thread of its own, so that drawing goes on. Holds at most kMaxWaiting
@@ -43,21 +37,19 @@ class TileWriter {
 
     void put(TilePicture picture);
     // The captures compressed since the last call; never waits.
-    std::vector<EncodedTile> encoded();
-    // True when nothing is waiting, being compressed, or ready for encoded().
-    bool idle() const;
+    std::vector<protocol::TileImage> encoded();
 
   private:
     void run();
     void process(const TilePicture& picture);
     void writeFile(const std::string& path, const std::vector<std::byte>& bytes);
-    void hand(EncodedTile tile);
+    void hand(protocol::TileImage tile);
 
-    mutable std::mutex mutex_;  // guards all below
+    std::mutex mutex_;  // guards all below
     std::condition_variable changed_;
     std::deque<TilePicture> waiting_;
-    std::vector<EncodedTile> encoded_;
-    bool busy_ = false, stop_ = false, reported_ = false;
+    std::vector<protocol::TileImage> encoded_;
+    bool stop_ = false, reported_ = false;
     std::thread thread_;
 };
 

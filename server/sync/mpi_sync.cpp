@@ -105,8 +105,8 @@ class MpiSync : public Sync {
         return all;
     }
 
-    void sendToRank0(CapturedTile tile) override;
-    std::vector<CapturedTile> poll() override;
+    void sendToRank0(protocol::TileImage tile) override;
+    std::vector<protocol::TileImage> poll() override;
 
   private:
     struct Outgoing {
@@ -127,8 +127,8 @@ class MpiSync : public Sync {
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     std::function<void()> idleWork_;
-    std::list<Outgoing> outgoing_;   // a list: MPI reads the bytes where they are
-    std::vector<CapturedTile> own_;  // rank 0's, which need no MPI
+    std::list<Outgoing> outgoing_;          // a list: MPI reads the bytes where they are
+    std::vector<protocol::TileImage> own_;  // rank 0's, which need no MPI
 };
 
 std::vector<std::string> MpiSync::gatherText(const std::string& mine) {
@@ -143,7 +143,7 @@ std::vector<std::string> MpiSync::gatherText(const std::string& mine) {
     return texts;
 }
 
-void MpiSync::sendToRank0(CapturedTile tile) {
+void MpiSync::sendToRank0(protocol::TileImage tile) {
     if (rank_ == 0) {
         own_.push_back(std::move(tile));
         return;
@@ -160,9 +160,9 @@ void MpiSync::sendToRank0(CapturedTile tile) {
                    &outgoing.request));
 }
 
-std::vector<CapturedTile> MpiSync::poll() {
+std::vector<protocol::TileImage> MpiSync::poll() {
     dropSent();
-    std::vector<CapturedTile> arrived = std::move(own_);
+    std::vector<protocol::TileImage> arrived = std::move(own_);
     own_.clear();
     if (rank_ != 0) return arrived;
     while (true) {

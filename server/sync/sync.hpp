@@ -13,14 +13,6 @@
 
 namespace iwalk {
 
-// A captured tile on its way to rank 0.
-struct CapturedTile {
-    std::uint64_t sequence = 0;
-    std::uint32_t tile = 0;
-    protocol::ImageKind kind = protocol::ImageKind::png;
-    std::vector<std::byte> bytes;
-};
-
 // Keeps the ranks of a wall together. Collective calls are made by all ranks in the same order. Nothing in
 // here spins: every wait is polled with sleeps that grow from 20 us to 1 ms, and what setIdleWork() gave is
 // done between them.
@@ -48,9 +40,9 @@ class Sync {
     virtual std::vector<protocol::TileStats> gather(const protocol::TileStats& mine) = 0;
 
     // Sends a captured tile to rank 0 without waiting; the bytes are kept until they are there.
-    virtual void sendToRank0(CapturedTile tile) = 0;
+    virtual void sendToRank0(protocol::TileImage tile) = 0;
     // Rank 0: the captured tiles that have come in. Other ranks: nothing. Both: lets transfers go on.
-    virtual std::vector<CapturedTile> poll() = 0;
+    virtual std::vector<protocol::TileImage> poll() = 0;
 };
 
 // Initialises MPI (Open MPI) for one drawing thread; finalises it when destroyed. Only once in a process.
