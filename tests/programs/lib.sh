@@ -29,11 +29,8 @@ refuses() {
     grep -qF -- "$text" "$work/stderr" || complain "no '$text': $* said: $(cat "$work/stderr")"
 }
 
-ranks() {
-    local count=$1
-    shift
-    timeout 120 mpirun --quiet --oversubscribe --bind-to none -np "$count" "$@" </dev/null
-}
+launch=(timeout 120 mpirun --quiet --oversubscribe --bind-to none -np)
+ranks() { "${launch[@]}" "$@" </dev/null; }
 
 # A closed grid of triangles as ASCII PLY: small, and of more than one page with --leaf-triangles 100.
 make_ply() {

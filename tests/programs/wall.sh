@@ -9,7 +9,7 @@ frames=$(for i in 1 2 3 4 5 6; do printf '{"eye": [20, -%d, 12], "target": [20, 
 echo "{\"fov_y_deg\": 50, \"frames\": [${frames%,}]}" >path.json
 
 # The whole way in one command, and nothing left running.
-"$source/scripts/wall" dataset --wall wall.toml --bin "$bin" --path path.json --capture pictures --capture-depth \
+"$source/scripts/wall" "$work/dataset" --wall wall.toml --bin "$bin" --path path.json --capture pictures --capture-depth \
     --report report.json -- --cache 128k || complain "scripts/wall failed"
 for frame in 0 1 2 3 4 5; do
     for tile in 0-0 0-1 1-0 1-1; do
@@ -23,12 +23,16 @@ done
 if "$bin/iwalk-compare" pictures/frame-000000/wall.png pictures/frame-000003/wall.png >/dev/null; then
     complain "the camera does not move"
 fi
-sleep 0.3
-[ -z "$(pgrep -f "$work/dataset" || true)" ] || complain "something still runs"
+nothing_runs() {
+    sleep 0.3
+    [ -z "$(pgrep -f "iwalk-server.*$work" || true)" ] || complain "servers still run: $(pgrep -af "iwalk-server.*$work")"
+}
+nothing_runs
 
 # A wall of its own for the clients below.
 start_wall() {
-    ranks 4 "$bin/iwalk-server" --dataset "$1" --wall wall.toml --listen 127.0.0.1:0 >"$work/log" 2>"$work/errors" &
+    "${launch[@]}" 4 "$bin/iwalk-server" --dataset "$work/$1" --wall wall.toml --listen 127.0.0.1:0 \
+        </dev/null >"$work/log" 2>"$work/errors" &
     wall=$!
     until address=$(sed -n 's/.*listening on //p' "$work/log") && [ -n "$address" ]; do
         kill -0 "$wall" || { cat "$work/errors" >&2; exit 1; }
@@ -76,4 +80,5 @@ start_wall flipped
 fly third || complain "a broken page ends the flight"
 grep -q 'drawn without page' "$work/errors" || complain "a broken page is not reported: $(cat "$work/errors")"
 stop_wall
+nothing_runs
 finish
