@@ -128,9 +128,8 @@ const std::array<Row, kRows>& rows() {
          parseBackground,
          [](const Settings& s) { return fmt::format("#{:06x}", s.background); }},
         {{"near", "DISTANCE",
-          "distance of the near plane in model units, default 0: chosen from the model's size; larger gives "
-          "finer "
-          "depth and cuts away what is close"},
+          "distance of the near plane in model units, default 0: chosen from the model's size; larger cuts "
+          "away more of what is close"},
          parseNear,
          [](const Settings& s) { return fmt::format("{}", s.near); }},
     }};
