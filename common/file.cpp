@@ -16,14 +16,15 @@ namespace {
 constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
 constexpr std::size_t kReadChunk = std::size_t{64} << 10;
 
+constexpr const char* kFreeSpace = "; free some space or write elsewhere";
+
 std::string reason(int code) {
     return std::generic_category().message(code);
 }
 
 Error writeError(const std::string& path, std::uint64_t offset, int code) {
     const bool full = code == ENOSPC || code == EDQUOT || code == EFBIG;
-    return fail("{}: cannot write at byte {}: {}{}", path, offset, reason(code),
-                full ? "; free some space or write elsewhere" : "");
+    return fail("{}: cannot write at byte {}: {}{}", path, offset, reason(code), full ? kFreeSpace : "");
 }
 
 // Closes on every way out.
@@ -94,7 +95,10 @@ Result<std::unique_ptr<RandomAccessFile>> openForReading(const std::string& path
 
 Result<OutputFile> OutputFile::create(const std::string& path) {
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor < 0) return fail("{}: cannot create: {}", path, reason(errno));
+    if (descriptor < 0) {
+        const bool full = errno == ENOSPC || errno == EDQUOT;
+        return fail("{}: cannot create: {}{}", path, reason(errno), full ? kFreeSpace : "");
+    }
     return OutputFile(path, descriptor);
 }
 
@@ -124,6 +128,19 @@ Result<void> OutputFile::write(std::span<const std::byte> bytes) {
         buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
     }
     size_ += bytes.size();
+    return {};
+}
+
+Result<void> OutputFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
+    CHECK_OP(offset + bytes.size(), <=, size_);
+    RETURN_IF_ERROR(flush());
+    while (!bytes.empty()) {
+        const ssize_t put = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        if (put < 0 && errno == EINTR) continue;
+        if (put < 0) return writeError(path_, offset, errno);
+        offset += static_cast<std::uint64_t>(put);
+        bytes = bytes.subspan(static_cast<std::size_t>(put));
+    }
     return {};
 }
 

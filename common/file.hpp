@@ -34,6 +34,10 @@ class OutputFile {
     ~OutputFile();
 
     Result<void> write(std::span<const std::byte> bytes);
+    // Hands everything to the system, so that others can read it.
+    Result<void> flush();
+    // Replaces bytes written before, from byte `offset` on: a header whose counts are known late.
+    Result<void> overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
     // Flushes, fsyncs and closes; fails with the system's reason (a full disk, for instance).
     Result<void> sync();
     std::uint64_t size() const { return size_; }  // bytes written so far
@@ -41,7 +45,6 @@ class OutputFile {
 
   private:
     OutputFile(std::string path, int descriptor);
-    Result<void> flush();
 
     std::string path_;
     int descriptor_ = -1;

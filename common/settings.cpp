@@ -94,6 +94,18 @@ Result<void> parseNear(Settings& settings, const std::string& text) {
     return {};
 }
 
+Result<void> parseLevel(Settings& settings, const std::string& text) {
+    if (text == "full") return settings.level = kFullLevel, Result<void>();
+    const auto level = wholeNumber<std::uint8_t>(text);
+    if (!level || *level == kFullLevel) return fail("not a level from 0 to {}, nor full", kFullLevel - 1);
+    settings.level = *level;
+    return {};
+}
+
+std::string levelText(std::uint8_t level) {
+    return level == kFullLevel ? "full" : fmt::format("{}", level);
+}
+
 // Everything there is to know about a setting; a new one is one more row here.
 struct Row {
     SettingInfo info;
@@ -101,7 +113,7 @@ struct Row {
     std::string (*print)(const Settings&);
 };
 
-constexpr std::size_t kRows = 6;
+constexpr std::size_t kRows = 7;
 const std::array<Row, kRows>& rows() {
     static const std::array<Row, kRows> table{{
         {{"cache", "BYTES",
@@ -132,6 +144,14 @@ const std::array<Row, kRows>& rows() {
           "away more of what is close"},
          parseNear,
          [](const Settings& s) { return fmt::format("{}", s.near); }},
+        {{"level", "L|full",
+          "draw all of the model at level of detail L, from 0, the coarsest, on, default full: the input's "
+          "own "
+          "resolution, as with any L finer than what the dataset has; each level halves the error and draws "
+          "more "
+          "triangles"},
+         parseLevel,
+         [](const Settings& s) { return levelText(s.level); }},
     }};
     return table;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <variant>
 
+#include "common/dataset/hierarchy.hpp"
 #include "common/result.hpp"
 
 namespace iwalk {
@@ -22,6 +23,7 @@ struct Settings {
     Ramp ramp = Ramp::automatic;
     std::uint32_t background = 0x20242a;  // 0xRRGGBB, sRGB
     double near = 0;                      // model units; 0: chosen from the model's size
+    std::uint8_t level = kFullLevel;      // that all of the model is drawn at
 };
 
 // One row of the table: how people write a setting.

@@ -25,9 +25,23 @@ struct Arguments {
     BuildOptions build;
     std::string memory = "512M";
     int step = 0;
-    std::string dataset;
+    std::string dataset, picture;
     bool json = false;
+    GenerateOptions generate;
 };
+
+void addLimits(CLI::App* command, Arguments& arguments) {
+    command
+        ->add_option(
+            "--memory", arguments.memory,
+            "Peak memory of this program, in bytes with suffix k, M or G; at least 64M. More is faster "
+            "where the model is larger than this")
+        ->type_name("BYTES")
+        ->capture_default_str();
+    command->add_option("--threads", arguments.build.threads, "Threads; 0: as many as there are cores")
+        ->type_name("N")
+        ->capture_default_str();
+}
 
 CLI::App* addBuild(CLI::App& app, Arguments& arguments) {
     CLI::App* command = app.add_subcommand("build", "Build a dataset from models (.ply, .obj)");
@@ -37,13 +51,7 @@ CLI::App* addBuild(CLI::App& app, Arguments& arguments) {
                      "Directory of the dataset; made when it is not there, replaced when it is a dataset")
         ->required()
         ->type_name("DATASET");
-    command
-        ->add_option(
-            "--memory", arguments.memory,
-            "Peak memory of this program, in bytes with suffix k, M or G; at least 64M. More is faster "
-            "where the model is larger than this")
-        ->type_name("BYTES")
-        ->capture_default_str();
+    addLimits(command, arguments);
     command
         ->add_option(
             "--leaf-triangles", arguments.build.leafTriangles,
@@ -57,9 +65,17 @@ CLI::App* addBuild(CLI::App& app, Arguments& arguments) {
             "The lattice step is 2^E model units. Default: chosen from the models' precision and size. "
             "It cannot change once the dataset is built")
         ->type_name("E");
-    command->add_option("--threads", arguments.build.threads, "Threads; 0: as many as there are cores")
-        ->type_name("N")
-        ->capture_default_str();
+    return command;
+}
+
+CLI::App* addInsert(CLI::App& app, Arguments& arguments) {
+    CLI::App* command = app.add_subcommand(
+        "insert", "Add models to a dataset, which is made anew from what it has and from them");
+    command->add_option("dataset", arguments.build.output, "Directory of the dataset")
+        ->required()
+        ->type_name("DATASET");
+    command->add_option("input", arguments.build.inputs, "Models to add")->required()->type_name("INPUT");
+    addLimits(command, arguments);
     return command;
 }
 
@@ -72,18 +88,50 @@ CLI::App* addReader(CLI::App& app, Arguments& arguments, const char* name, const
     return command;
 }
 
+CLI::App* addGenerate(CLI::App& app, GenerateOptions& options) {
+    CLI::App* command = app.add_subcommand(
+        "generate",
+        "Make a model of any size for tests and measurements; the same bytes on every machine\n"
+        "  sphere       closed, with noise, no colours\n"
+        "  plant        storeys, pipes, tanks, cable trays; coloured, to be seen from inside\n"
+        "  isosurface   a turbulent layer between two fluids, coloured by height");
+    command->add_option("scene", options.scene, "sphere, plant or isosurface")
+        ->required()
+        ->type_name("SCENE");
+    command
+        ->add_option(
+            "--triangles", options.triangles,
+            "How many, 1000 to 1000000000; the result has the nearest number that the scene can make, "
+            "within 1 %. About 20 bytes on disk each")
+        ->required()
+        ->type_name("N");
+    command->add_option("--seed", options.seed, "Another number makes another model of the same kind")
+        ->type_name("S")
+        ->capture_default_str();
+    command->add_option("-o,--output", options.output, "PLY file to write; replaced when it is there")
+        ->required()
+        ->type_name("OUT.ply");
+    return command;
+}
+
 int usage(const std::string& message) {
     fmt::print(stderr, "iwalk-preprocess: {} (see --help)\n", message);
     return kUsage;
 }
 
 int run(int argc, char** argv) {
-    CLI::App app("Turns triangle models into datasets that iwalk-server draws.", "iwalk-preprocess");
+    CLI::App app("Turns triangle models into datasets that iwalk-server draws, and makes models to try.",
+                 "iwalk-preprocess");
     app.set_version_flag("--version", std::string("iwalk-preprocess ") + kVersion);
     app.require_subcommand(1);
     Arguments arguments;
     const CLI::App* build = addBuild(app, arguments);
-    const CLI::App* info = addReader(app, arguments, "info", "Say what a dataset has");
+    const CLI::App* insert = addInsert(app, arguments);
+    const CLI::App* generate = addGenerate(app, arguments.generate);
+    CLI::App* info = addReader(app, arguments, "info", "Say what a dataset has");
+    info->add_option("--draw", arguments.picture,
+                     "Draw the model and the cells of the octree's leaves, coloured by depth, into this file")
+        ->type_name("OUT.png");
     const CLI::App* verify = addReader(app, arguments, "verify", "Read all of a dataset and check it");
     try {
         app.parse(argc, argv);
@@ -93,11 +141,13 @@ int run(int argc, char** argv) {
         return usage(error.what());
     }
 
-    if (info->parsed()) return report(runInfo(arguments.dataset, arguments.json));
+    if (generate->parsed()) return report(runGenerate(arguments.generate));
+    if (info->parsed()) return report(runInfo(arguments.dataset, arguments.json, arguments.picture));
     if (verify->parsed()) return report(runVerify(arguments.dataset, arguments.json));
     const Result<std::uint64_t> memory = parseBytes(arguments.memory);
     if (!memory) return usage("--memory: " + memory.error().message);
     arguments.build.memoryBytes = *memory;
+    if (insert->parsed()) return report(runInsert(arguments.build));
     if (build->count("--step") > 0) arguments.build.stepExponent = arguments.step;
     return report(runBuild(arguments.build));
 }

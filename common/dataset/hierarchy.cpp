@@ -3,6 +3,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -19,8 +20,8 @@ constexpr std::uint32_t kEndianTag = 0x01020304;
 struct HierarchyHeader {
     std::uint32_t magic, version, endian, rootCellLog2;
     std::int64_t rootCell[3];
-    std::uint32_t nodeCount, pageCount;
-    std::uint64_t payloadHash;  // xxh64 of all node records, then all page records
+    std::uint32_t nodeCount, entryCount, pageCount, reserved;
+    std::uint64_t payloadHash;  // xxh64 of all node records, then all level records, then all page records
     std::uint64_t hash;         // xxh64 of everything before
 };
 static_assert(sizeof(HierarchyHeader) == kHierarchyHeaderBytes);
@@ -33,6 +34,7 @@ std::uint64_t payloadHash(const Hierarchy& hierarchy) {
     XXH64_state_t state;
     XXH64_reset(&state, 0);
     XXH64_update(&state, hierarchy.nodes.data(), hierarchy.nodes.size() * sizeof(NodeRecord));
+    XXH64_update(&state, hierarchy.entries.data(), hierarchy.entries.size() * sizeof(LevelRecord));
     XXH64_update(&state, hierarchy.pages.data(), hierarchy.pages.size() * sizeof(PageRecord));
     return XXH64_digest(&state);
 }
@@ -52,11 +54,24 @@ Result<void> checkHeader(const std::string& path, const HierarchyHeader& header,
         return fail("{}: byte 8: written in another byte order; {}", path, kHierarchyDamaged);
     if (header.hash != headerHash(header))
         return fail("{}: header: checksum does not match; {}", path, kHierarchyDamaged);
+    if (header.reserved != 0) return fail("{}: byte 52: not 0; {}", path, kHierarchyDamaged);
     const std::uint64_t wanted = sizeof(header) + std::uint64_t{header.nodeCount} * sizeof(NodeRecord) +
+                                 std::uint64_t{header.entryCount} * sizeof(LevelRecord) +
                                  std::uint64_t{header.pageCount} * sizeof(PageRecord);
     if (fileBytes != wanted) {
         return fail("{}: {} bytes where its header says {}; {}", path, fileBytes, wanted, kHierarchyDamaged);
     }
+    return {};
+}
+
+// Moves `place` behind them.
+template <class Record>
+Result<void> readRecords(const RandomAccessFile& file, std::uint64_t& place, std::uint32_t count,
+                         std::vector<Record>& records) {
+    records.resize(count);
+    const auto bytes = std::as_writable_bytes(std::span(records));
+    RETURN_IF_ERROR(file.readAt(place, bytes));
+    place += bytes.size();
     return {};
 }
 
@@ -71,12 +86,10 @@ Result<Hierarchy> readHierarchy(const std::string& path) {
     Hierarchy hierarchy;
     hierarchy.rootCell = pointOf(header.rootCell);
     hierarchy.rootCellLog2 = header.rootCellLog2;
-    hierarchy.nodes.resize(header.nodeCount);
-    hierarchy.pages.resize(header.pageCount);
-    const auto nodes = std::as_writable_bytes(std::span(hierarchy.nodes));
-    RETURN_IF_ERROR(file->readAt(sizeof(header), nodes));
-    const auto pages = std::as_writable_bytes(std::span(hierarchy.pages));
-    RETURN_IF_ERROR(file->readAt(sizeof(header) + nodes.size(), pages));
+    std::uint64_t place = sizeof(header);
+    RETURN_IF_ERROR(readRecords(*file, place, header.nodeCount, hierarchy.nodes));
+    RETURN_IF_ERROR(readRecords(*file, place, header.entryCount, hierarchy.entries));
+    RETURN_IF_ERROR(readRecords(*file, place, header.pageCount, hierarchy.pages));
     if (payloadHash(hierarchy) != header.payloadHash) {
         return fail("{}: records from byte {} on: checksum does not match; {}", path, sizeof(header),
                     kHierarchyDamaged);
@@ -91,6 +104,38 @@ LatticeBox Hierarchy::box(const NodeRecord& node) {
 }
 LatticeBox Hierarchy::ownBox(const NodeRecord& node) {
     return {pointOf(node.ownMin), pointOf(node.ownMax)};
+}
+
+const LevelRecord* Hierarchy::entryAt(const NodeRecord& node, unsigned level) const {
+    const std::span<const LevelRecord> all = entriesOf(node);
+    const auto found = std::ranges::find(all, level, &LevelRecord::level);
+    return found == all.end() ? nullptr : &*found;
+}
+
+std::uint32_t Hierarchy::ownTriangles(const NodeRecord& node) const {
+    const LevelRecord* full = fullEntryOf(node);
+    return full != nullptr ? full->triangles : 0;
+}
+
+const LevelRecord* Hierarchy::drawnAt(const NodeRecord& node, unsigned level) const {
+    if (hasLevels() && node.depth > level) return nullptr;  // an ancestor's entry covers it
+    const LevelRecord* entry = entryAt(node, level);
+    return entry != nullptr ? entry : fullEntryOf(node);
+}
+
+std::vector<LatticePoint> cellsOfNodes(const Hierarchy& hierarchy) {
+    std::vector<LatticePoint> cells(hierarchy.nodes.size(), hierarchy.rootCell);
+    for (std::size_t n = 0; n < hierarchy.nodes.size(); ++n) {
+        const NodeRecord& node = hierarchy.nodes[n];
+        std::uint32_t child = node.firstChild;
+        for (unsigned octant = 0; octant < 8; ++octant) {
+            if ((node.childMask >> octant & 1) == 0) continue;
+            const std::int64_t half = std::int64_t{1} << (hierarchy.rootCellLog2 - node.depth - 1);
+            cells[child++] =
+                cells[n] + LatticePoint(octant & 1 ? half : 0, octant & 2 ? half : 0, octant & 4 ? half : 0);
+        }
+    }
+    return cells;
 }
 
 Result<Hierarchy> loadHierarchy(const std::string& dataset, const Manifest& manifest) {
@@ -108,6 +153,7 @@ Result<std::uint64_t> saveHierarchy(const std::string& path, const Hierarchy& hi
     header.rootCellLog2 = hierarchy.rootCellLog2;
     for (std::size_t axis = 0; axis < 3; ++axis) header.rootCell[axis] = hierarchy.rootCell[axis];
     header.nodeCount = static_cast<std::uint32_t>(hierarchy.nodes.size());
+    header.entryCount = static_cast<std::uint32_t>(hierarchy.entries.size());
     header.pageCount = static_cast<std::uint32_t>(hierarchy.pages.size());
     header.payloadHash = payloadHash(hierarchy);
     header.hash = headerHash(header);
@@ -115,6 +161,7 @@ Result<std::uint64_t> saveHierarchy(const std::string& path, const Hierarchy& hi
     ASSIGN_OR_RETURN(OutputFile file, OutputFile::create(path));
     RETURN_IF_ERROR(file.write(bytesOf(header)));
     RETURN_IF_ERROR(file.write(std::as_bytes(std::span(hierarchy.nodes))));
+    RETURN_IF_ERROR(file.write(std::as_bytes(std::span(hierarchy.entries))));
     RETURN_IF_ERROR(file.write(std::as_bytes(std::span(hierarchy.pages))));
     RETURN_IF_ERROR(file.sync());
     return file.size();

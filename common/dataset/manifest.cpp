@@ -61,6 +61,13 @@ class Reader {
         if (!good) complain(key, "three finite numbers");
     }
 
+    void getDistance(const char* key, double& out) {
+        const ordered_json* value = find(key);
+        if (value == nullptr) return;
+        if (value->is_number()) out = value->get<double>();
+        if (!value->is_number() || !std::isfinite(out) || out < 0) complain(key, "a finite number from 0 on");
+    }
+
     // The object, or list of objects, under `key`, each read by `read`.
     template <class Read>
     void getObject(const char* key, Read read) {
@@ -134,6 +141,13 @@ void readCounts(Reader& reader, Manifest& manifest) {
     reader.get("nodes", manifest.nodes, std::uint64_t{0xffffffff});
     reader.get("leaves", manifest.leaves, manifest.nodes);
     reader.get("pages", manifest.pages, std::uint64_t{0xffffffff});
+    reader.get("leaf_triangles", manifest.leafTriangles, std::uint64_t{0xffffffff});
+}
+
+void readLevel(Reader& reader, LevelSummary& level) {
+    reader.getDistance("error", level.error);
+    reader.get("triangles", level.triangles);
+    reader.get("bytes", level.bytes);
 }
 
 void readAll(Reader& reader, Manifest& manifest) {
@@ -142,6 +156,8 @@ void readAll(Reader& reader, Manifest& manifest) {
         attributes.get("colors", manifest.colors);
         attributes.get("normals", manifest.normals);
     });
+    reader.getList("levels", [&](Reader& level) { readLevel(level, manifest.levels.emplace_back()); });
+    reader.getObject("full", [&](Reader& level) { readLevel(level, manifest.full); });
     reader.getExponent("step_exponent", manifest.stepExponent);
     reader.getObject("bounds", [&](Reader& bounds) {
         bounds.getPoint("min", manifest.bounds.min);
@@ -170,6 +186,14 @@ ordered_json fileJson(const DatasetFile& file) {
     return json;
 }
 
+ordered_json levelJson(const LevelSummary& level) {
+    ordered_json json;
+    json["error"] = level.error;
+    json["triangles"] = level.triangles;
+    json["bytes"] = level.bytes;
+    return json;
+}
+
 ordered_json provenanceJson(const Provenance& provenance) {
     ordered_json json;
     json["input"] = provenance.input;
@@ -189,6 +213,10 @@ ordered_json manifestJson(const Manifest& manifest) {
     json["nodes"] = manifest.nodes;
     json["leaves"] = manifest.leaves;
     json["pages"] = manifest.pages;
+    json["leaf_triangles"] = manifest.leafTriangles;
+    json["levels"] = ordered_json::array();
+    for (const LevelSummary& level : manifest.levels) json["levels"].push_back(levelJson(level));
+    json["full"] = levelJson(manifest.full);
     json["attributes"]["colors"] = manifest.colors;
     json["attributes"]["normals"] = manifest.normals;
     json["step_exponent"] = manifest.stepExponent;

@@ -4,28 +4,24 @@
 #include "common/dataset/page.hpp"
 
 #include <meshoptimizer.h>
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
-#include <glm/geometric.hpp>
+#include <limits>
+
+#include "common/dataset/page_ranges.hpp"
+#include "common/dataset/page_streams.hpp"
 
 namespace iwalk {
 namespace {
 
 constexpr std::uint32_t kPageMagic = 0x47505749;  // "IWPG"
-constexpr std::uint32_t kNarrowMask = (1u << kNarrowBits) - 1;
+constexpr std::uint32_t kMaxOffset = std::numeric_limits<std::uint32_t>::max();
 
 enum Stream { kRanges, kPositions, kColors, kNormals, kIndices, kStreams };
-constexpr std::array<const char*, kStreams> kStreamNames{"ranges", "positions", "colors", "normals",
-                                                         "indices"};
-
-struct StreamRecord {
-    std::uint32_t offset, bytes;  // from the page's start; both 0 when the page does not have the stream
-    std::uint64_t hash;           // xxh64 of the stream
-};
+constexpr std::array<const char*, kStreams> kStreamNames{"page ranges", "page positions", "page colors",
+                                                         "page normals", "page indices"};
 
 struct PageHeader {
     std::uint32_t magic, version, flags, vertexCount, indexCount, rangeCount;
@@ -35,42 +31,16 @@ struct PageHeader {
 };
 static_assert(sizeof(PageHeader) == kPageHeaderBytes);
 
-std::uint64_t hashOf(std::span<const std::byte> bytes) {
-    return XXH64(bytes.data(), bytes.size(), 0);
-}
-
 std::uint64_t headerHash(const PageHeader& header) {
     return hashOf(std::as_bytes(std::span(&header, 1)).first(offsetof(PageHeader, hash)));
 }
 
-std::uint64_t packNarrow(const std::uint32_t (&offset)[3]) {
-    return std::uint64_t{offset[0]} | std::uint64_t{offset[1]} << kNarrowBits |
-           std::uint64_t{offset[2]} << (2 * kNarrowBits);
-}
-
-// Appends a stream behind what is there and notes it in the header.
-void append(std::vector<std::byte>& bytes, PageHeader& header, Stream stream,
-            std::span<const std::byte> coded) {
-    header.streams[stream] = {static_cast<std::uint32_t>(bytes.size()),
-                              static_cast<std::uint32_t>(coded.size()), hashOf(coded)};
-    bytes.insert(bytes.end(), coded.begin(), coded.end());
-}
-
-template <class T>
-std::vector<std::byte> codeVertices(const std::vector<T>& values) {
-    std::vector<std::byte> coded(meshopt_encodeVertexBufferBound(values.size(), sizeof(T)));
-    coded.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(coded.data()), coded.size(),
-                                            values.data(), values.size(), sizeof(T)));
-    return coded;
-}
-
-// One member of all vertices, packed by `pack`.
-template <class Pack>
-std::vector<std::byte> codeMember(const std::vector<PageVertex>& vertices, Pack pack) {
-    std::vector<decltype(pack(vertices[0]))> values;
+std::vector<std::byte> codeMember(const std::vector<PageVertex>& vertices,
+                                  std::uint32_t PageVertex::*member) {
+    std::vector<std::uint32_t> values;
     values.reserve(vertices.size());
-    for (const PageVertex& vertex : vertices) values.push_back(pack(vertex));
-    return codeVertices(values);
+    for (const PageVertex& vertex : vertices) values.push_back(vertex.*member);
+    return codeItems(values);
 }
 
 // The codec's version 1 is a little smaller; meshoptimizer has one setting for the whole program.
@@ -88,10 +58,29 @@ std::vector<std::byte> codeIndices(const std::vector<std::uint16_t>& indices, st
     return coded;
 }
 
-bool isWide(const std::vector<PageVertex>& vertices) {
-    std::uint32_t bits = 0;
-    for (const PageVertex& vertex : vertices) bits |= vertex.offset[0] | vertex.offset[1] | vertex.offset[2];
-    return bits > kNarrowMask;
+std::vector<PageOffset> offsetsOf(const std::vector<PageVertex>& vertices) {
+    std::vector<PageOffset> offsets;
+    offsets.reserve(vertices.size());
+    for (const PageVertex& vertex : vertices) offsets.push_back(std::to_array(vertex.offset));
+    return offsets;
+}
+
+void checkRangeGeometry(const PageGeometry& page) {
+    PageOffset lowest{kMaxOffset, kMaxOffset, kMaxOffset};
+    for (const Range& range : page.ranges) {
+        CHECK(isPath(range.path));
+        const auto indices = std::span(page.indices).subspan(range.firstIndex, range.indexCount);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            lowest[axis] = std::min(lowest[axis], range.boxMin[axis]);
+            for (const std::uint16_t index : indices) {
+                CHECK_OP(index, <, page.vertices.size());
+                const std::uint32_t at = page.vertices[index].offset[axis];
+                CHECK_OP(at, >=, range.boxMin[axis]);
+                CHECK_OP(at, <=, range.boxMax[axis]);
+            }
+        }
+    }
+    CHECK((lowest == PageOffset{0, 0, 0}));
 }
 
 bool hasStream(std::uint32_t flags, int stream) {
@@ -111,8 +100,9 @@ Result<void> checkHeader(std::span<const std::byte> bytes, const PageRecord& rec
                     kDatasetVersion);
     }
     if (header.hash != headerHash(header)) return fail("page header: checksum does not match");
-    if (header.flags != record.flags || header.vertexCount != record.vertexCount ||
-        header.indexCount != record.indexCount || header.rangeCount != record.rangeCount) {
+    if (header.flags != (record.flags & ~std::uint32_t{kMorphWide}) ||
+        header.vertexCount != record.vertexCount || header.indexCount != record.indexCount ||
+        header.rangeCount != record.rangeCount) {
         return fail("page header: flags or counts are not those of its record");
     }
     for (const std::int64_t axis : header.origin) {
@@ -132,37 +122,10 @@ Result<void> checkStreams(std::span<const std::byte> bytes, const PageHeader& he
             if (!blank) return fail("page header: {} where the flags say there are none", name);
             continue;
         }
-        if (stream.offset != place || stream.bytes > bytes.size() - place) {
-            return fail("page header: place of {} is wrong", name);
-        }
-        if (hashOf(bytes.subspan(stream.offset, stream.bytes)) != stream.hash) {
-            return fail("page {} at byte {} of the page: checksum does not match", name, stream.offset);
-        }
-        place += stream.bytes;
+        RETURN_IF_ERROR(checkStream(bytes, stream, name, place));
     }
     if (place != bytes.size()) return fail("page: {} bytes behind its last stream", bytes.size() - place);
     return {};
-}
-
-Result<std::vector<Range>> readRanges(std::span<const std::byte> coded, const PageRecord& record) {
-    if (coded.size() != std::size_t{record.rangeCount} * sizeof(Range))
-        return fail("page ranges: wrong length");
-    std::vector<Range> ranges(record.rangeCount);
-    std::memcpy(ranges.data(), coded.data(), coded.size());
-    std::uint32_t next = 0;
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-        const Range& range = ranges[i];
-        const bool inOrder = range.firstIndex == next && range.indexCount > 0 && range.indexCount % 3 == 0 &&
-                             range.indexCount <= record.indexCount - next;
-        if (!inOrder) return fail("page range {}: does not follow the one before", i);
-        for (int axis = 0; axis < 3; ++axis) {
-            if (range.boxMin[axis] > range.boxMax[axis]) return fail("page range {}: box is inside out", i);
-        }
-        next += range.indexCount;
-    }
-    if (next != record.indexCount)
-        return fail("page ranges: cover {} of {} indices", next, record.indexCount);
-    return ranges;
 }
 
 // Indices are decoded beside `out` and checked there, as `out` may be slow to read.
@@ -188,44 +151,47 @@ std::uint32_t alignUp(std::uint32_t value, std::uint32_t to) {
 }  // namespace
 
 Result<void> checkPageRecord(const PageRecord& record) {
-    const bool good = (record.flags & ~(kPageWide | kPageColors | kPageNormals)) == 0 &&
+    const bool page = (record.flags & ~(kPageWide | kPageColors | kPageNormals | kMorphWide)) == 0 &&
                       record.vertexCount >= 1 && record.vertexCount <= kMaxPageVertices &&
                       record.indexCount >= 3 && record.indexCount % 3 == 0 &&
                       record.indexCount <= kMaxPageIndices && record.rangeCount >= 1 &&
                       record.rangeCount <= record.indexCount / 3 && record.bytes >= kPageHeaderBytes &&
-                      record.bytes <= kMaxPageBytes;
-    if (good) return {};
-    return fail("page record: impossible: {} bytes, {} vertices, {} indices, {} ranges, flags {}",
-                record.bytes, record.vertexCount, record.indexCount, record.rangeCount, record.flags);
+                      record.bytes <= kMaxPageBytes && record.reserved == 0;
+    if (!page) {
+        return fail("page record: impossible: {} bytes, {} vertices, {} indices, {} ranges, flags {}",
+                    record.bytes, record.vertexCount, record.indexCount, record.rangeCount, record.flags);
+    }
+    const bool blank = record.morphOffset == 0 && record.morphFile == 0 && (record.flags & kMorphWide) == 0;
+    const bool morph = record.morphBytes == 0
+                           ? blank
+                           : record.morphBytes >= kMorphHeaderBytes && record.morphBytes <= kMaxPageBytes;
+    if (morph) return {};
+    return fail("page record: impossible morph block of {} bytes", record.morphBytes);
 }
 
 std::vector<std::byte> encodePage(const PageGeometry& page, PageRecord& record) {
     CHECK_OP(page.vertices.size(), <=, kMaxPageVertices);
     CHECK_OP(page.indices.size(), <=, kMaxPageIndices);
+    checkRangeGeometry(page);
+    const std::vector<PageOffset> offsets = offsetsOf(page.vertices);
     PageHeader header{};
     header.magic = kPageMagic;
     header.version = kDatasetVersion;
-    header.flags = page.attributes | (isWide(page.vertices) ? kPageWide : 0u);
+    header.flags = page.attributes | (needsWide(offsets) ? kPageWide : 0u);
     header.vertexCount = static_cast<std::uint32_t>(page.vertices.size());
     header.indexCount = static_cast<std::uint32_t>(page.indices.size());
     header.rangeCount = static_cast<std::uint32_t>(page.ranges.size());
-    for (std::size_t axis = 0; axis < 3; ++axis) header.origin[axis] = page.origin[axis];
+    for (glm::length_t axis = 0; axis < 3; ++axis) header.origin[axis] = page.origin[axis];
 
     std::vector<std::byte> bytes(sizeof(header));
-    append(bytes, header, kRanges, std::as_bytes(std::span(page.ranges)));
-    append(bytes, header, kPositions,
-           (header.flags & kPageWide) != 0
-               ? codeMember(page.vertices, [](const PageVertex& v) { return std::to_array(v.offset); })
-               : codeMember(page.vertices, [](const PageVertex& v) { return packNarrow(v.offset); }));
-    if ((header.flags & kPageColors) != 0) {
-        append(bytes, header, kColors,
-               codeMember(page.vertices, [](const PageVertex& v) { return v.color; }));
-    }
-    if ((header.flags & kPageNormals) != 0) {
-        append(bytes, header, kNormals,
-               codeMember(page.vertices, [](const PageVertex& v) { return v.normal; }));
-    }
-    append(bytes, header, kIndices, codeIndices(page.indices, page.vertices.size()));
+    const auto append = [&](Stream stream, std::span<const std::byte> coded) {
+        header.streams[stream] = appendStream(bytes, coded);
+    };
+    append(kRanges, codeRanges(page.ranges));
+    append(kPositions, codePositions(offsets, (header.flags & kPageWide) != 0));
+    if ((header.flags & kPageColors) != 0) append(kColors, codeMember(page.vertices, &PageVertex::color));
+    if ((header.flags & kPageNormals) != 0) append(kNormals, codeMember(page.vertices, &PageVertex::normal));
+    append(kIndices, codeIndices(page.indices, page.vertices.size()));
     header.hash = headerHash(header);
     std::memcpy(bytes.data(), &header, sizeof(header));
 
@@ -234,6 +200,8 @@ std::vector<std::byte> encodePage(const PageGeometry& page, PageRecord& record) 
     record.indexCount = header.indexCount;
     record.rangeCount = header.rangeCount;
     record.flags = header.flags;
+    record.morphOffset = record.morphBytes = record.morphFile = 0;
+    record.reserved = 0;
     CHECK_OP(checkPageRecord(record).ok(), ==, true);
     return bytes;
 }
@@ -261,15 +229,10 @@ Result<PageTable> decodePage(std::span<const std::byte> bytes, const PageRecord&
     const auto stream = [&](Stream s) {
         return bytes.subspan(header.streams[s].offset, header.streams[s].bytes);
     };
-    const auto vertices = [&](Stream s, std::uint32_t place, std::uint32_t stride) -> Result<void> {
-        if (meshopt_decodeVertexBuffer(out.data() + place, record.vertexCount, stride,
-                                       reinterpret_cast<const unsigned char*>(stream(s).data()),
-                                       stream(s).size()) == 0) {
-            return {};
-        }
-        return fail("page {}: cannot be decoded", kStreamNames[s]);
+    const auto vertices = [&](Stream s, std::uint32_t place, std::uint32_t stride) {
+        return decodeItems(stream(s), kStreamNames[s], record.vertexCount, stride, out.data() + place);
     };
-    ASSIGN_OR_RETURN(std::vector<Range> ranges, readRanges(stream(kRanges), record));
+    ASSIGN_OR_RETURN(std::vector<Range> ranges, decodeRanges(stream(kRanges), record));
     RETURN_IF_ERROR(vertices(kPositions, layout.positions, layout.positionStride));
     if ((record.flags & kPageColors) != 0) RETURN_IF_ERROR(vertices(kColors, layout.colors, 4));
     if ((record.flags & kPageNormals) != 0) RETURN_IF_ERROR(vertices(kNormals, layout.normals, 4));
@@ -279,17 +242,18 @@ Result<PageTable> decodePage(std::span<const std::byte> bytes, const PageRecord&
 
 glm::u32vec3 pageOffset(std::span<const std::byte> decoded, const PageRecord& record, std::uint32_t index) {
     const PageLayout layout = pageLayout(record);
-    const std::byte* at = decoded.data() + layout.positions + std::size_t{index} * layout.positionStride;
-    if ((record.flags & kPageWide) != 0) {
-        glm::u32vec3 offset;
-        std::memcpy(&offset, at, sizeof(offset));
-        return offset;
+    return unpackPosition(decoded.data() + layout.positions + std::size_t{index} * layout.positionStride,
+                          (record.flags & kPageWide) != 0);
+}
+
+std::vector<LatticePoint> latticePositions(const PageTable& table, std::span<const std::byte> decoded,
+                                           const PageRecord& record) {
+    std::vector<LatticePoint> positions;
+    positions.reserve(record.vertexCount);
+    for (std::uint32_t v = 0; v < record.vertexCount; ++v) {
+        positions.push_back(table.origin + LatticePoint(pageOffset(decoded, record, v)));
     }
-    std::uint64_t packed = 0;
-    std::memcpy(&packed, at, sizeof(packed));
-    return glm::u32vec3(std::uint32_t(packed) & kNarrowMask,
-                        std::uint32_t(packed >> kNarrowBits) & kNarrowMask,
-                        std::uint32_t(packed >> (2 * kNarrowBits)) & kNarrowMask);
+    return positions;
 }
 
 }  // namespace iwalk

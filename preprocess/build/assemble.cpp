@@ -8,10 +8,12 @@
 
 #include "preprocess/build/grid.hpp"
 #include "preprocess/build/order.hpp"
+#include "preprocess/levels/detail.hpp"
 
 namespace iwalk {
 namespace {
 
+constexpr int kJoining = -2;           // a group of slices; others are numbered by levels, or -1
 constexpr unsigned kKeyDigitBits = 9;  // 512 bins, about as many as a grid has
 
 std::vector<std::uint64_t> countsOf(const std::vector<Bin>& bins) {
@@ -44,7 +46,14 @@ Result<void> Assembler::run(std::vector<Bin> bins) {
     RETURN_IF_ERROR(addGrid(std::move(bins), {Tree::kNone, 0, 0}));
     RETURN_IF_ERROR(flush());
     packer_.finish();
-    return writer_.write(packer_.take(), tree_, arena_);
+    return writePages();
+}
+
+Result<void> Assembler::writePages() {
+    const auto entryOf = [&](const NodeRanges& ranges) -> LevelRecord& {
+        return tree_.fullEntry(ranges.node);
+    };
+    return writer_.write(packer_.take(), entryOf, arena_);
 }
 
 Result<void> Assembler::addGrid(std::vector<Bin> bins, const GridPlace& place) {
@@ -60,6 +69,7 @@ Result<void> Assembler::addGrid(std::vector<Bin> bins, const GridPlace& place) {
             continue;
         }
         numbers[i] = tree_.add(self.parent, self.octant, self.depth);
+        if (planned.kind == PlannedNode::kInterior) tree_.setInterior(numbers[i]);
         std::vector<Bin> own;
         std::uint64_t total = 0;
         for (Bin& bin : std::span(bins).subspan(planned.firstBin, planned.binCount)) {
@@ -177,21 +187,21 @@ Result<void> Assembler::flush() {
     const std::vector<Subtree> grown = growUnits(order);
     std::vector<Slice> slices = makeSlices(grown, order);
     sortSlices(slices, order);
+    findLevels(slices);
     for (std::size_t i = 0; i < slices.size(); ++i) {
         NodeRecord& node = tree_[slices[i].node];
         LatticeBox box = Hierarchy::ownBox(node);
         box.add(slices[i].box);
         setOwnBox(node, box);
-        node.triangles += slices[i].count;
         packer_.add(std::move(slices[i]), totals_[i]);
         // Page by page rather than all at the end, so that the progress bar moves.
-        if (i % 64 == 63) RETURN_IF_ERROR(writer_.write(packer_.take(), tree_, arena_));
+        if (i % 64 == 63) RETURN_IF_ERROR(writePages());
         if (options_.done) {
             options_.done(static_cast<double>(doneTriangles_ + order.size() * (i + 1) / slices.size()) /
                           static_cast<double>(allTriangles_));
         }
     }
-    RETURN_IF_ERROR(writer_.write(packer_.take(), tree_, arena_));
+    RETURN_IF_ERROR(writePages());
     doneTriangles_ += order.size();
     packer_.keep();
     records_.clear();
@@ -255,6 +265,21 @@ void Assembler::sortSlices(std::vector<Slice>& slices, std::vector<std::uint32_t
     };
     arena_.execute(
         [&] { tbb::parallel_for(std::size_t{0}, slices.size(), [&](std::size_t i) { sort(slices[i]); }); });
+}
+
+// How fine the levels are that each slice's triangles need; those of a node in several slices, which are
+// large for it, join its own level.
+void Assembler::findLevels(std::vector<Slice>& slices) {
+    const auto find = [&](std::size_t i) {
+        Slice& slice = slices[i];
+        const int depth = tree_[slice.node].depth;
+        int& finest = tree_.finest(slice.node);
+        if (totals_[i] <= options_.leafTriangles) finest = finestLevel(format_, slice, depth);
+        // Triangles that stay full until they join those below the node move otherwise than those of leaves.
+        slice.group = tree_.isInterior(slice.node) && finest < depth ? kJoining : finest;
+        slice.leastLevels = static_cast<unsigned>(std::max(finest + 1 - depth, 0)) + kRangeLevels;
+    };
+    arena_.execute([&] { tbb::parallel_for(std::size_t{0}, slices.size(), find); });
 }
 
 }  // namespace iwalk

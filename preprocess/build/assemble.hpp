@@ -31,7 +31,7 @@ class Assembler {
               PageWriter& writer);
 
     Result<void> run(std::vector<Bin> bins);
-    std::vector<NodeRecord> takeNodes() { return tree_.finish(); }
+    Tree::Records takeTree() { return tree_.finish(); }
 
   private:
     // Triangles of the batch that belong together: of one node, or of a subtree still to be split.
@@ -63,6 +63,8 @@ class Assembler {
     Result<void> flush();
     std::vector<Subtree> growUnits(std::vector<std::uint32_t>& order);
     std::vector<Slice> makeSlices(const std::vector<Subtree>& grown, const std::vector<std::uint32_t>& order);
+    void findLevels(std::vector<Slice>& slices);
+    Result<void> writePages();
     void sortSlices(std::vector<Slice>& slices, std::vector<std::uint32_t>& order);
     unsigned edgeLog2(std::uint32_t node) const;
 

@@ -9,12 +9,15 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/dataset/level_summary.hpp"
 #include "preprocess/build/assemble.hpp"
+#include "preprocess/build/dataset_importer.hpp"
 #include "preprocess/build/distribute.hpp"
 #include "preprocess/build/grid.hpp"
 #include "preprocess/build/output_directory.hpp"
 #include "preprocess/build/pipeline.hpp"
 #include "preprocess/build/survey.hpp"
+#include "preprocess/levels/levels.hpp"
 
 namespace iwalk {
 namespace {
@@ -23,17 +26,21 @@ constexpr std::uint32_t kMinLeafTriangles = 16, kMaxLeafTriangles = 65536;
 // In memory a triangle also has its place in the order (twice), its bin, and a sort key while its node is
 // sorted.
 constexpr std::size_t kBatchOverheadBytes = 4 + 4 + 2 + 32;
+constexpr std::size_t kTargetChunkBytes = std::size_t{64} << 10;  // of up to 512 bins
 
 class Build {
   public:
+    // `before`: what the first input, a dataset, was made of; empty when it is a model like the others.
     Build(const BuildOptions& options, const Budget& budget, const BuildParts& parts, OutputDirectory& output,
-          Progress& progress)
+          Progress& progress, std::vector<Provenance> before = {})
         : options_(options),
           budget_(budget),
           parts_(parts),
           output_(output),
           progress_(progress),
-          inputs_(options.inputs, budget, output.temporaryDirectory(), parts.openImporter) {}
+          inputs_(options.inputs, budget, output.temporaryDirectory(), parts.openImporter) {
+        manifest_.provenance = std::move(before);
+    }
 
     Result<Manifest> run() {
         RETURN_IF_ERROR(scan());
@@ -70,6 +77,7 @@ class Build {
         progress_.phase("reading triangles");
         Distributor distributor(lattice_, format, manifest_.colors, manifest_.normals, spill);
         const auto sink = [&](std::span<const Triangle> triangles) { return distributor.add(triangles); };
+        const bool inserting = !manifest_.provenance.empty();
         for (std::size_t i = 0; i < options_.inputs.size(); ++i) {
             const auto done = [&](double inInput) {
                 progress_.done((static_cast<double>(i) + inInput) /
@@ -77,10 +85,11 @@ class Build {
             };
             distributor.begin(options_.inputs[i], summaries_[i]);
             ASSIGN_OR_RETURN(const ImportCounts counts, inputs_.triangles(i, sink, done));
+            manifest_.triangles += distributor.stored();
+            if (inserting && i == 0) continue;
             manifest_.provenance.push_back({std::filesystem::path(options_.inputs[i]).filename().string(),
                                             distributor.stored(), counts.droppedNonFinite,
                                             distributor.degenerate()});
-            manifest_.triangles += distributor.stored();
         }
         if (manifest_.triangles > 0) return distributor.finish();
         return fail(
@@ -95,12 +104,31 @@ class Build {
         const std::uint32_t attributes =
             (manifest_.colors ? kPageColors : 0u) | (manifest_.normals ? kPageNormals : 0u);
         PageWriter writer(pages, lattice_, format, attributes);
-        Assembler assembler(format, lattice_, assembleOptions(format), spill, writer);
-        RETURN_IF_ERROR(assembler.run(std::move(bins)));
+        ASSIGN_OR_RETURN(LevelModel model, buildPages(format, spill, std::move(bins), writer));
+        setBounds(Hierarchy::box(model.nodes[0]));
+        RETURN_IF_ERROR(buildLevels(model, pages.path(), writer));
         RETURN_IF_ERROR(pages.sync());
         manifest_.pageFiles = {{pagesName, pages.size()}};
         manifest_.vertices = writer.vertices();
-        return finish(assembler, writer);
+        return finish(finishModel(std::move(model), writer.takeRecords()));
+    }
+
+    // The octree and the pages of full resolution.
+    Result<LevelModel> buildPages(const RecordFormat& format, ChunkFile& spill, std::vector<Bin> bins,
+                                  PageWriter& writer) {
+        Assembler assembler(format, lattice_, assembleOptions(format), spill, writer);
+        RETURN_IF_ERROR(assembler.run(std::move(bins)));
+        Tree::Records tree = assembler.takeTree();
+        return startModel(lattice_, std::move(tree.nodes), tree.entries, std::move(tree.finest));
+    }
+
+    Result<void> buildLevels(LevelModel& model, const std::string& pagesPath, PageWriter& writer) {
+        malloc_trim(0);
+        const RecordFormat format(lattice_.rootCellLog2, manifest_.colors, manifest_.normals, true);
+        ASSIGN_OR_RETURN(ChunkFile spill, ChunkFile::create(output_.temporary("targets"), kTargetChunkBytes));
+        const LevelOptions options{options_.leafTriangles, pagesPath, budget_.batchBytes / 3,
+                                   budget_.threads};
+        return makeLevels(model, format, options, writer, spill, progress_);
     }
 
     AssembleOptions assembleOptions(const RecordFormat& format) {
@@ -110,12 +138,7 @@ class Build {
                 budget_.threads, part()};
     }
 
-    Result<void> finish(Assembler& assembler, PageWriter& writer) {
-        Hierarchy hierarchy;
-        hierarchy.rootCell = lattice_.rootCell;
-        hierarchy.rootCellLog2 = lattice_.rootCellLog2;
-        hierarchy.nodes = assembler.takeNodes();
-        hierarchy.pages = writer.takeRecords();
+    Result<void> finish(const Hierarchy& hierarchy) {
         const std::string name = fmt::format("hierarchy-{}.bin", output_.generation());
         ASSIGN_OR_RETURN(const std::uint64_t bytes, saveHierarchy(output_.temporary(name), hierarchy));
         manifest_.hierarchy = {name, bytes};
@@ -124,14 +147,20 @@ class Build {
         manifest_.leaves = static_cast<std::uint64_t>(
             std::ranges::count(hierarchy.nodes, std::uint8_t{0}, &NodeRecord::childMask));
         manifest_.pages = hierarchy.pages.size();
-        const LatticeBox box = Hierarchy::box(hierarchy.nodes[0]);
+        manifest_.leafTriangles = options_.leafTriangles;
+        LevelSummaries levels = summariseLevels(hierarchy, lattice_.stepExponent);
+        manifest_.levels = std::move(levels.levels);
+        manifest_.full = levels.full;
+        return {};
+    }
+
+    void setBounds(const LatticeBox& box) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             manifest_.bounds.min[axis] =
                 std::ldexp(static_cast<double>(box.min[axis]), lattice_.stepExponent);
             manifest_.bounds.max[axis] =
                 std::ldexp(static_cast<double>(box.max[axis]), lattice_.stepExponent);
         }
-        return {};
     }
 
     const BuildOptions& options_;
@@ -156,6 +185,23 @@ Result<Manifest> buildDatasetFrom(const BuildOptions& options, Progress& progres
     ASSIGN_OR_RETURN(const Budget budget, makeBudget(options));
     ASSIGN_OR_RETURN(OutputDirectory output, OutputDirectory::open(options.output));
     return Build(options, budget, parts, output, progress).run();
+}
+
+// The dataset's own triangles are the first input of a new generation on the same lattice.
+Result<Manifest> insertIntoDataset(const BuildOptions& options, Progress& progress) {
+    if (options.inputs.empty()) return fail("no inputs: name at least one model");
+    ASSIGN_OR_RETURN(const Manifest before, loadManifest(options.output));
+    ASSIGN_OR_RETURN(OutputDirectory output, OutputDirectory::open(options.output));
+    BuildOptions all = options;
+    all.inputs.insert(all.inputs.begin(), options.output);
+    all.stepExponent = before.stepExponent;
+    all.leafTriangles = static_cast<std::uint32_t>(before.leafTriangles);
+    BuildParts parts;
+    parts.openImporter = [&](const std::string& path, const ImportLimits& limits) {
+        return path == options.output ? openDatasetImporter(path) : openImporter(path, limits);
+    };
+    ASSIGN_OR_RETURN(const Budget budget, makeBudget(all));
+    return Build(all, budget, parts, output, progress, before.provenance).run();
 }
 
 Result<Manifest> buildDataset(const BuildOptions& options, Progress& progress) {

@@ -7,6 +7,7 @@
 
 #include "common/dataset/manifest.hpp"
 #include "common/result.hpp"
+#include "preprocess/progress.hpp"
 
 namespace iwalk {
 
@@ -22,17 +23,14 @@ struct BuildOptions {
     unsigned threads = 0;  // 0: as many as there are cores
 };
 
-// Long work tells how far it is; rates and ETA are the listener's business.
-class Progress {
-  public:
-    virtual ~Progress() = default;
-    virtual void phase(const std::string& name) = 0;
-    virtual void done(double part) = 0;  // 0..1 of the phase
-};
-
 // Builds a dataset. Memory stays below the limit at any input size; all temporary files live in the output
 // directory and are gone afterwards, whether it succeeds or fails; a dataset that was there stays intact
 // until the new one is committed. Output bytes depend on the inputs, the leaf size and the step alone.
 Result<Manifest> buildDataset(const BuildOptions& options, Progress& progress);
+
+// Adds models to the dataset `options.output`, on its lattice and with its leaf size; the octree's root grows
+// when they lie outside. Killed at any moment, the dataset is as before or complete. The whole dataset is
+// made anew: with temporary files, that takes as much disk and time as building it.
+Result<Manifest> insertIntoDataset(const BuildOptions& options, Progress& progress);
 
 }  // namespace iwalk

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <utility>
 
+#include "common/dataset/page.hpp"
 #include "preprocess/build/grid.hpp"
 
 namespace iwalk {
@@ -42,28 +42,61 @@ void sortItems(std::vector<Item>& items) {
     }
 }
 
-// Appends the ends of runs of keys[begin, end).
-void split(std::span<const std::uint64_t> keys, std::size_t begin, std::size_t end,
-           std::vector<std::size_t>& ends) {
-    if (end - begin <= kMaxRangeTriangles) {
-        ends.push_back(end);
-        return;
+class RangeCutter {
+  public:
+    RangeCutter(std::span<const std::uint64_t> keys, unsigned edgeLog2, unsigned leastLevels,
+                const KeysAround& around)
+        : keys_(keys),
+          around_(around),
+          axisBits_(std::min(edgeLog2, kMortonKeyBits / 3)),
+          leastLevels_(leastLevels) {}
+
+    void cut(std::size_t begin, std::size_t end) {
+        const unsigned levels = commonLevels(keys_[begin], keys_[end - 1]);
+        const std::uint32_t path = pathAt(keys_[begin], levels);
+        if (levels == mostLevels()) return cutEvenly(begin, end, path);
+        const auto outside = [&](const std::optional<std::uint64_t>& key) {
+            return !key || pathAt(*key, levels) != path;
+        };
+        const bool fits = !isTooLarge(end - begin, levels, leastLevels_);
+        if (fits && outside(around_.before) && outside(around_.after)) {
+            runs_.push_back({end, path});
+            return;
+        }
+        for (std::size_t from = begin; from < end;) {
+            const std::uint32_t octant = pathAt(keys_[from], levels + 1);
+            std::size_t to = from;
+            while (to < end && pathAt(keys_[to], levels + 1) == octant) ++to;
+            cut(from, to);
+            from = to;
+        }
     }
-    const std::uint64_t difference = keys[begin] ^ keys[end - 1];
-    if (difference == 0) {  // nothing to tell them apart
-        const std::size_t middle = begin + (end - begin) / 2;
-        split(keys, begin, middle, ends);
-        split(keys, middle, end, ends);
-        return;
+    std::vector<CellRun> take() { return std::move(runs_); }
+
+  private:
+    unsigned mostLevels() const { return std::min(axisBits_, kMaxPathLevels); }
+
+    std::uint32_t pathAt(std::uint64_t key, unsigned levels) const {
+        const std::uint64_t code = key >> (kKeyBits - kMortonKeyBits) >> 3 * (axisBits_ - levels);
+        return static_cast<std::uint32_t>(std::uint64_t{1} << 3 * levels | code);
     }
-    const std::uint64_t bit = std::bit_floor(difference);
-    const std::uint64_t border = (keys[end - 1] & ~(bit - 1));
-    const auto middle = std::lower_bound(keys.begin() + static_cast<std::ptrdiff_t>(begin),
-                                         keys.begin() + static_cast<std::ptrdiff_t>(end), border);
-    const std::size_t at = static_cast<std::size_t>(middle - keys.begin());
-    split(keys, begin, at, ends);
-    split(keys, at, end, ends);
-}
+    unsigned commonLevels(std::uint64_t a, std::uint64_t b) const {
+        unsigned levels = mostLevels();
+        while (pathAt(a, levels) != pathAt(b, levels)) --levels;
+        return levels;
+    }
+    // Nothing tells these apart.
+    void cutEvenly(std::size_t begin, std::size_t end, std::uint32_t path) {
+        const std::size_t parts = (end - begin + kMaxRangeTriangles - 1) / kMaxRangeTriangles;
+        for (std::size_t i = 1; i <= parts; ++i) runs_.push_back({begin + (end - begin) * i / parts, path});
+    }
+
+    std::span<const std::uint64_t> keys_;
+    const KeysAround& around_;
+    const unsigned axisBits_;  // of a key, in each axis
+    const unsigned leastLevels_;
+    std::vector<CellRun> runs_;
+};
 
 }  // namespace
 
@@ -78,18 +111,11 @@ void sortByKey(const RecordFormat& format, const std::uint32_t* records, unsigne
     std::ranges::transform(items, order.begin(), &Item::record);
 }
 
-std::vector<std::size_t> cutRanges(std::span<const std::uint64_t> keys) {
-    std::vector<std::size_t> ends;
-    if (!keys.empty()) split(keys, 0, keys.size(), ends);
-    std::vector<std::size_t> joined;
-    std::size_t begin = 0;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        const bool last = i + 1 == ends.size();
-        if (!last && ends[i + 1] - begin <= kMaxRangeTriangles) continue;
-        joined.push_back(ends[i]);
-        begin = ends[i];
-    }
-    return joined;
+std::vector<CellRun> cutRanges(std::span<const std::uint64_t> keys, unsigned edgeLog2, unsigned leastLevels,
+                               const KeysAround& around) {
+    RangeCutter cutter(keys, edgeLog2, leastLevels, around);
+    if (!keys.empty()) cutter.cut(0, keys.size());
+    return cutter.take();
 }
 
 }  // namespace iwalk

@@ -25,7 +25,8 @@ constexpr const char* kTemporary = ".iwalk-build";
 constexpr const char* kLock = ".iwalk-lock";
 
 std::string reason(int code) {
-    return std::generic_category().message(code);
+    const bool full = code == ENOSPC || code == EDQUOT;
+    return std::generic_category().message(code) + (full ? "; free some space or build elsewhere" : "");
 }
 
 // G of `pages-G.bin` and `hierarchy-G.bin`.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "preprocess/build/grid.hpp"
+
 namespace iwalk {
 namespace {
 
@@ -20,6 +22,8 @@ Slice part(const Slice& slice, std::size_t begin, std::size_t end, std::size_t w
     result.node = slice.node;
     result.edgeLog2 = slice.edgeLog2;
     result.box = slice.box;
+    result.leastLevels = slice.leastLevels;
+    result.group = slice.group;
     result.count = end - begin;
     result.records = slice.order != nullptr ? slice.records : slice.records + begin * words;
     result.order = slice.order != nullptr ? slice.order + begin : nullptr;
@@ -40,10 +44,11 @@ void own(Slice& slice, std::size_t words) {
 }  // namespace
 
 Packer::Packer(const RecordFormat& format, std::size_t mostTriangles)
-    : words_(format.words()), most_(std::min(mostTriangles, kMaxPageTriangles)) {}
+    : format_(format), words_(format.words()), most_(std::min(mostTriangles, kMaxPageTriangles)) {}
 
 bool Packer::fits(const Slice& slice) const {
     if (waitingTriangles_ + slice.count > most_) return false;
+    if (!waiting_.slices.empty() && waiting_.slices[0].group != slice.group) return false;
     LatticeBox box = waitingBox_;
     box.add(slice.box);
     bool partsWide = isWide(slice.box);
@@ -64,6 +69,33 @@ void Packer::add(Slice slice, std::uint64_t total) {
     waiting_.slices.push_back(std::move(slice));
 }
 
+void Packer::add(Slice slice) {
+    CHECK(!slice.runs.empty());
+    if (slice.count > most_) return addPieces(slice);
+    const std::uint64_t total = slice.count;
+    add(std::move(slice), total);
+}
+
+// As few pages as do, each of whole runs and about as large as the others.
+void Packer::addPieces(const Slice& slice) {
+    closeShared();
+    const std::size_t pages = (slice.count + most_ - 1) / most_;
+    const std::size_t share = (slice.count + pages - 1) / pages;
+    for (std::size_t first = 0, next = 0, begin = 0; first < slice.runs.size(); first = next) {
+        while (next < slice.runs.size() && (next == first || slice.runs[next].end - begin <= share)) ++next;
+        const std::size_t end = slice.runs[next - 1].end;
+        Slice piece = part(slice, begin, end, words_);
+        own(piece, words_);
+        for (std::size_t run = first; run < next; ++run) {
+            piece.runs.push_back(slice.runs[run]);
+            piece.runs.back().end -= begin;
+        }
+        begin = end;
+        complete_.push_back({{}, {}});
+        complete_.back().slices.push_back(std::move(piece));
+    }
+}
+
 void Packer::addLarge(Slice slice, std::uint64_t total) {
     if (largeDone_ == 0) closeShared();
     const std::uint64_t pages = (total + most_ - 1) / most_;
@@ -76,12 +108,30 @@ void Packer::addLarge(Slice slice, std::uint64_t total) {
         const std::uint64_t pageEnd = (page + 1) * total / pages;
         const std::size_t end =
             static_cast<std::size_t>(std::min<std::uint64_t>(slice.count, begin + (pageEnd - largeDone_)));
+        if (pageFull_) closeLarge(keyOf(slice, begin));
         waiting_.slices.push_back(part(slice, begin, end, words_));
         largeDone_ += end - begin;
+        pageFull_ = largeDone_ == pageEnd;
         begin = end;
-        if (largeDone_ == pageEnd) closeShared();
     }
-    if (largeDone_ == total) largeDone_ = 0;
+    if (largeDone_ < total) return;
+    closeLarge(std::nullopt);
+    waiting_.around = {};
+    largeDone_ = 0;
+}
+
+// One page of a large node, whose next triangle has this key. The next page will know the last of this one.
+void Packer::closeLarge(std::optional<std::uint64_t> keyAfter) {
+    const Slice& last = waiting_.slices.back();
+    const std::uint64_t before = keyOf(last, last.count - 1);
+    waiting_.around.after = keyAfter;
+    closeShared();
+    waiting_.around.before = before;
+    pageFull_ = false;
+}
+
+std::uint64_t Packer::keyOf(const Slice& slice, std::size_t i) const {
+    return sortKey(format_.place(slice.record(i, words_)), slice.edgeLog2);
 }
 
 void Packer::closeShared() {

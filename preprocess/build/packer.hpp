@@ -18,6 +18,8 @@ class Packer {
     // A slice of a node that has `total` triangles in all. Only a node for several pages may come in several
     // slices.
     void add(Slice slice, std::uint64_t total);
+    // A whole entry of a coarser level, with its runs and its triangles its own.
+    void add(Slice slice);
     // No more slices come.
     void finish() { closeShared(); }
     // The pages that are complete.
@@ -27,14 +29,19 @@ class Packer {
 
   private:
     void addLarge(Slice slice, std::uint64_t total);
+    void addPieces(const Slice& slice);
     void closeShared();
+    void closeLarge(std::optional<std::uint64_t> keyAfter);
+    std::uint64_t keyOf(const Slice& slice, std::size_t i) const;
     bool fits(const Slice& slice) const;
 
+    RecordFormat format_;
     std::size_t words_, most_;
     PageJob waiting_;  // shared by small nodes, or the next page of a large one
     std::size_t waitingTriangles_ = 0;
     LatticeBox waitingBox_;
     std::uint64_t largeDone_ = 0;  // triangles of the large node under way
+    bool pageFull_ = false;        // `waiting_` is complete but for the key behind it
     std::vector<PageJob> complete_;
 };
 

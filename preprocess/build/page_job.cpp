@@ -47,7 +47,7 @@ class Builder {
     Builder(const PageJob& job, const Lattice& lattice, const RecordFormat& format, std::uint32_t attributes)
         : job_(job), format_(format) {
         page_.attributes = attributes;
-        origin_ = lowestCorner();
+        origin_ = lowestCorner(lattice);
         page_.origin = lattice.fromCell(origin_);
     }
 
@@ -63,16 +63,24 @@ class Builder {
         reorderVertices();
         BuiltPage built;
         built.nodes = std::move(nodes_);
+        built.errors = std::move(errors_);
         built.bytes = encodePage(page_, built.record);
         return built;
     }
 
   private:
-    // Of these very triangles: a slice's box may be larger, by how the triangles happened to come.
-    CellPoint lowestCorner() {
+    // Of these very triangles, and the boxes that their ranges must have: a slice's box may be larger, by how
+    // the triangles happened to come.
+    CellPoint lowestCorner(const Lattice& lattice) {
         CellPoint lowest(std::numeric_limits<std::uint64_t>::max());
         for (const Slice& slice : job_.slices) {
             triangles_ += slice.count;
+            for (const Run& run : slice.runs) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const std::int64_t value = run.box.min[axis] - lattice.rootCell[axis];
+                    lowest[axis] = std::min(lowest[axis], static_cast<std::uint64_t>(value));
+                }
+            }
             for (std::size_t i = 0; i < slice.count; ++i) {
                 const std::uint32_t* record = slice.record(i, format_.words());
                 for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -103,13 +111,19 @@ class Builder {
         for (const Slice& slice : job_.slices) {
             for (std::size_t i = 0; i < slice.count; ++i) {
                 const std::uint32_t* record = slice.record(i, format_.words());
-                keys_.push_back(sortKey(format_.place(record), slice.edgeLog2));
+                if (slice.runs.empty()) keys_.push_back(sortKey(format_.place(record), slice.edgeLog2));
                 for (std::size_t corner = 0; corner < 3; ++corner) {
                     indices_.push_back(welder.add(vertexOf(record, corner)));
+                    if (format_.hasErrors()) addError(indices_.back(), format_.error(record, corner));
                 }
             }
         }
         localOf_.assign(page_.vertices.size(), kUnseen);
+    }
+
+    void addError(std::uint32_t vertex, std::uint8_t error) {
+        if (vertex == errors_.size()) errors_.push_back(0);
+        errors_[vertex] = std::max(errors_[vertex], error);
     }
 
     // Ranges of the node that slices [first, last) belong to; those before are done.
@@ -117,19 +131,48 @@ class Builder {
         CHECK_OP(first, <, last);
         const std::size_t before = doneTriangles_;
         const std::uint32_t firstRange = static_cast<std::uint32_t>(page_.ranges.size());
-        for (const std::size_t end : cutRanges(std::span(keys_).subspan(before, triangles))) {
-            addRange(doneTriangles_, before + end);
-            doneTriangles_ = before + end;
+        const Slice& slice = job_.slices[first];
+        NodeRanges owner{slice.node, firstRange, 0, static_cast<std::uint32_t>(triangles), 0, {}, 0};
+        for (const Run& run : slice.runs.empty() ? cutRuns(slice, triangles) : slice.runs) {
+            addRange(doneTriangles_, before + run.end, run, owner.box);
+            doneTriangles_ = before + run.end;
         }
-        const std::uint32_t count = static_cast<std::uint32_t>(page_.ranges.size()) - firstRange;
-        nodes_.push_back({job_.slices[first].node, firstRange, count});
+        owner.rangeCount = static_cast<std::uint32_t>(page_.ranges.size()) - firstRange;
+        countVertices(before, doneTriangles_, owner);
+        nodes_.push_back(owner);
     }
 
-    void addRange(std::size_t begin, std::size_t end) {
+    std::vector<Run> cutRuns(const Slice& slice, std::size_t triangles) {
+        const std::span<const std::uint64_t> keys = std::span(keys_).last(keys_.size() - doneKeys_);
+        doneKeys_ += triangles;
+        std::vector<Run> runs;
+        for (const CellRun& run :
+             cutRanges(keys.first(triangles), slice.edgeLog2, slice.leastLevels, job_.around)) {
+            runs.push_back({run.end, run.path, {}});
+        }
+        return runs;
+    }
+
+    // That the triangles [begin, end) use.
+    void countVertices(std::size_t begin, std::size_t end, NodeRanges& owner) const {
+        std::vector<bool> used(page_.vertices.size(), false);
+        for (const std::uint32_t index : std::span(indices_).subspan(3 * begin, 3 * (end - begin))) {
+            owner.vertices += used[index] ? 0 : 1;
+            used[index] = true;
+            if (!errors_.empty()) owner.error = std::max(owner.error, errors_[index]);
+        }
+    }
+
+    void addRange(std::size_t begin, std::size_t end, const Run& run, LatticeBox& all) {
         Range range{};
+        range.path = run.path;
         range.firstIndex = static_cast<std::uint32_t>(3 * begin);
         range.indexCount = static_cast<std::uint32_t>(3 * (end - begin));
         std::ranges::fill(range.boxMin, std::numeric_limits<std::uint32_t>::max());
+        for (std::size_t axis = 0; axis < 3 && !run.box.empty(); ++axis) {
+            range.boxMin[axis] = static_cast<std::uint32_t>(run.box.min[axis] - page_.origin[axis]);
+            range.boxMax[axis] = static_cast<std::uint32_t>(run.box.max[axis] - page_.origin[axis]);
+        }
         const std::span<std::uint32_t> indices =
             std::span(indices_).subspan(range.firstIndex, range.indexCount);
         for (const std::uint32_t index : indices) {
@@ -139,6 +182,12 @@ class Builder {
                 range.boxMax[axis] = std::max(range.boxMax[axis], value);
             }
         }
+        LatticeBox box;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            box.min[axis] = page_.origin[axis] + range.boxMin[axis];
+            box.max[axis] = page_.origin[axis] + range.boxMax[axis];
+        }
+        all.add(box);
         optimiseCache(indices);
         page_.ranges.push_back(range);
     }
@@ -160,8 +209,15 @@ class Builder {
 
     // Vertices in the order of their first use; indices to 16 bits.
     void reorderVertices() {
-        meshopt_optimizeVertexFetch(page_.vertices.data(), indices_.data(), indices_.size(),
-                                    page_.vertices.data(), page_.vertices.size(), sizeof(PageVertex));
+        std::vector<std::uint32_t> places(page_.vertices.size());
+        meshopt_optimizeVertexFetchRemap(places.data(), indices_.data(), indices_.size(), places.size());
+        const auto reorder = [&](auto& values) {
+            auto old = values;
+            for (std::size_t v = 0; v < old.size(); ++v) values[places[v]] = old[v];
+        };
+        reorder(page_.vertices);
+        reorder(errors_);
+        for (std::uint32_t& index : indices_) index = places[index];
         page_.indices.assign(indices_.size(), 0);
         std::ranges::transform(indices_, page_.indices.begin(),
                                [](std::uint32_t index) { return static_cast<std::uint16_t>(index); });
@@ -174,8 +230,9 @@ class Builder {
     PageGeometry page_;
     CellPoint origin_{0};
     std::vector<std::uint32_t> indices_, localOf_;
-    std::vector<std::uint64_t> keys_;
-    std::size_t triangles_ = 0, doneTriangles_ = 0;
+    std::vector<std::uint64_t> keys_;  // of the triangles whose slices are to be cut
+    std::vector<std::uint8_t> errors_;
+    std::size_t triangles_ = 0, doneTriangles_ = 0, doneKeys_ = 0;
     std::vector<NodeRanges> nodes_;
 };
 

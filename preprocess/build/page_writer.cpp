@@ -6,7 +6,7 @@
 
 namespace iwalk {
 
-Result<void> PageWriter::write(std::vector<PageJob> jobs, Tree& tree, tbb::task_arena& arena) {
+Result<void> PageWriter::write(std::vector<PageJob> jobs, const EntryOf& entryOf, tbb::task_arena& arena) {
     // A few pages a thread at a time: what is built and not yet written stays small.
     const std::size_t step = 4 * static_cast<std::size_t>(arena.max_concurrency());
     for (std::size_t begin = 0; begin < jobs.size(); begin += step) {
@@ -17,26 +17,42 @@ Result<void> PageWriter::write(std::vector<PageJob> jobs, Tree& tree, tbb::task_
                 jobs[begin + i] = {};
             });
         });
-        for (BuiltPage& page : built) RETURN_IF_ERROR(append(page, tree));
+        for (BuiltPage& page : built) RETURN_IF_ERROR(append(page, entryOf));
     }
     return {};
 }
 
-Result<void> PageWriter::append(BuiltPage& page, Tree& tree) {
+Result<void> PageWriter::append(BuiltPage& page, const EntryOf& entryOf) {
     page.record.offset = file_.size();
     page.record.file = 0;
     RETURN_IF_ERROR(file_.write(page.bytes));
     const std::uint32_t number = static_cast<std::uint32_t>(records_.size());
     for (const NodeRanges& owner : page.nodes) {
-        NodeRecord& node = tree[owner.node];
-        const bool first = node.pageCount++ == 0;
-        if (first) node.firstPage = number;
-        node.firstRange = first ? static_cast<std::uint16_t>(owner.firstRange) : std::uint16_t{0};
-        node.rangeCount = first ? static_cast<std::uint16_t>(owner.rangeCount) : std::uint16_t{0};
+        LevelRecord& entry = entryOf(owner);
+        const bool first = entry.pageCount++ == 0;
+        if (first) entry.firstPage = number;
+        entry.firstRange = first ? static_cast<std::uint16_t>(owner.firstRange) : std::uint16_t{0};
+        entry.rangeCount = first ? static_cast<std::uint16_t>(owner.rangeCount) : std::uint16_t{0};
+        entry.triangles += owner.triangles;
+        entry.vertices += owner.vertices;
     }
     vertices_ += page.record.vertexCount;
+    if (!page.errors.empty()) errors_.emplace(number, std::move(page.errors));
     records_.push_back(page.record);
     return {};
+}
+
+Result<void> PageWriter::appendMorph(std::uint32_t number, std::span<const std::byte> bytes) {
+    records_[number].morphOffset = file_.size();
+    return file_.write(bytes);
+}
+
+std::vector<std::uint8_t> PageWriter::takeErrors(std::uint32_t number) {
+    const auto found = errors_.find(number);
+    if (found == errors_.end()) return {};
+    std::vector<std::uint8_t> errors = std::move(found->second);
+    errors_.erase(found);
+    return errors;
 }
 
 }  // namespace iwalk

@@ -2,11 +2,13 @@
 
 #include <oneapi/tbb/task_arena.h>
 
+#include <functional>
+#include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "common/file.hpp"
 #include "preprocess/build/page_job.hpp"
-#include "preprocess/build/tree.hpp"
 
 namespace iwalk {
 
@@ -16,20 +18,34 @@ class PageWriter {
     PageWriter(OutputFile& file, const Lattice& lattice, const RecordFormat& format, std::uint32_t attributes)
         : file_(file), lattice_(lattice), format_(format), attributes_(attributes) {}
 
-    // Appends the pages, and tells the nodes which are theirs.
-    Result<void> write(std::vector<PageJob> jobs, Tree& tree, tbb::task_arena& arena);
+    // The entry that ranges of a page belong to, which is told so.
+    using EntryOf = std::function<LevelRecord&(const NodeRanges&)>;
 
+    // Appends the pages.
+    Result<void> write(std::vector<PageJob> jobs, const EntryOf& entryOf, tbb::task_arena& arena);
+    // Appends the morph block of page `number`, whose record has its size.
+    Result<void> appendMorph(std::uint32_t number, std::span<const std::byte> bytes);
+    // What was written can be read.
+    Result<void> flush() { return file_.flush(); }
+    // What follows are triangles of this kind.
+    void setFormat(const RecordFormat& format) { format_ = format; }
+
+    std::span<const PageRecord> records() const { return records_; }
+    PageRecord& record(std::uint32_t number) { return records_[number]; }
     std::vector<PageRecord> takeRecords() { return std::move(records_); }
+    // The errors of a page's vertices, once; empty at full resolution.
+    std::vector<std::uint8_t> takeErrors(std::uint32_t number);
     std::uint64_t vertices() const { return vertices_; }
 
   private:
-    Result<void> append(BuiltPage& page, Tree& tree);
+    Result<void> append(BuiltPage& page, const EntryOf& entryOf);
 
     OutputFile& file_;
     Lattice lattice_;
     RecordFormat format_;
     std::uint32_t attributes_;
     std::vector<PageRecord> records_;
+    std::unordered_map<std::uint32_t, std::vector<std::uint8_t>> errors_;  // by page
     std::uint64_t vertices_ = 0;
 };
 

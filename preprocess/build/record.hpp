@@ -13,20 +13,22 @@ struct TriangleRecord {
     std::array<CellPoint, 3> positions;
     std::array<std::uint32_t, 3> colors{};   // RGBA8
     std::array<std::uint32_t, 3> normals{};  // packNormal()
+    std::array<std::uint8_t, 3> errors{};    // of a coarser level, in 255ths of its limit
 };
 
 // How triangles are kept while they are sorted, in memory and in the spill file: as few 32-bit words as the
 // model allows. Nine for positions (eighteen where the root cell is larger than 2^32 steps), three each for
-// attributes.
+// attributes, one for errors.
 class RecordFormat {
   public:
-    RecordFormat(unsigned rootCellLog2, bool colors, bool normals)
+    RecordFormat(unsigned rootCellLog2, bool colors, bool normals, bool errors = false)
         : rootCellLog2_(rootCellLog2),
           wide_(rootCellLog2 > 32),
           colors_(colors),
           normals_(normals),
+          errors_(errors),
           attributes_(wide_ ? 18 : 9),
-          words_(attributes_ + (colors ? 3u : 0u) + (normals ? 3u : 0u)) {}
+          words_(attributes_ + (colors ? 3u : 0u) + (normals ? 3u : 0u) + (errors ? 1u : 0u)) {}
 
     std::size_t words() const { return words_; }
     std::size_t bytes() const { return words_ * sizeof(std::uint32_t); }
@@ -42,6 +44,7 @@ class RecordFormat {
         }
         if (colors_) std::memcpy(out + at, triangle.colors.data(), 12);
         if (normals_) std::memcpy(out + at + (colors_ ? 3 : 0), triangle.normals.data(), 12);
+        if (errors_) std::memcpy(out + words_ - 1, triangle.errors.data(), 3);
     }
 
     CellPoint position(const std::uint32_t* record, std::size_t corner) const {
@@ -57,13 +60,17 @@ class RecordFormat {
     std::uint32_t normal(const std::uint32_t* record, std::size_t corner) const {
         return normals_ ? record[attributes_ + (colors_ ? 3u : 0u) + corner] : 0;
     }
+    std::uint8_t error(const std::uint32_t* record, std::size_t corner) const {
+        return errors_ ? static_cast<std::uint8_t>(record[words_ - 1] >> 8 * corner) : std::uint8_t{0};
+    }
+    bool hasErrors() const { return errors_; }
     TrianglePlace place(const std::uint32_t* record) const {
         return placeOf(position(record, 0), position(record, 1), position(record, 2), rootCellLog2_);
     }
 
   private:
     unsigned rootCellLog2_;
-    bool wide_, colors_, normals_;
+    bool wide_, colors_, normals_, errors_;
     std::size_t attributes_, words_;
 };
 

@@ -13,20 +13,37 @@ class Tree {
     static constexpr std::uint32_t kNone = 0xffffffff;
 
     std::uint32_t add(std::uint32_t parent, std::uint8_t octant, unsigned depth);
-    // Own triangles, box and pages of a node; the rest is finish()'s.
+    // Own box of a node; the rest is finish()'s.
     NodeRecord& operator[](std::uint32_t node) { return nodes_[node].record; }
     const NodeRecord& operator[](std::uint32_t node) const { return nodes_[node].record; }
+    // Of the node's own triangles; blank when it is first asked for.
+    LevelRecord& fullEntry(std::uint32_t node);
+    // The finest level of the node's own triangles; depth - 1 when nobody says.
+    int& finest(std::uint32_t node) { return nodes_[node].finest; }
+    // It has children, or is to have some.
+    void setInterior(std::uint32_t node) { nodes_[node].interior = true; }
+    bool isInterior(std::uint32_t node) const { return nodes_[node].interior; }
 
-    // Puts children in rows behind their parents and computes the boxes of the content. Leaves the tree
-    // empty.
-    std::vector<NodeRecord> finish();
+    struct Records {
+        std::vector<NodeRecord> nodes;
+        std::vector<LevelRecord> entries;  // full
+        std::vector<int> finest;           // by node
+    };
+    // Puts children in rows behind their parents, entries in the order of their nodes, and computes the boxes
+    // of the content. Leaves the tree empty.
+    Records finish();
 
   private:
     struct Growing {
         NodeRecord record;
         std::uint32_t parent;
         std::uint8_t octant;
+        LevelRecord full;
+        int finest;
+        bool interior;
     };
+    std::vector<std::uint32_t> breadthFirst() const;
+
     std::vector<Growing> nodes_;
 };
 

@@ -12,8 +12,10 @@ struct Verification {
     std::vector<std::string> problems;                  // one line each, naming file, page and offset
 };
 
-// Reads all of a dataset and checks what loading does not: every page decodes, every box is exactly that of
-// its triangles, and every triangle is in a node where it belongs. Fails when manifest or hierarchy cannot be
+// Reads all of a dataset and checks what loading does not: every page and morph block decodes, boxes contain
+// what they should, every triangle of the input is in the node and cell where it belongs, and each level
+// follows from the next finer one (docs/format.md). Levels are looked at when all pages are good by
+// themselves. Memory: the hierarchy, and about 250 MB at most. Fails when manifest or hierarchy cannot be
 // loaded.
 Result<Verification> verifyDataset(const std::string& dataset, Progress& progress);
 

@@ -37,17 +37,27 @@ void printSummary(const Manifest& manifest, double seconds) {
     }
 }
 
-}  // namespace
-
-Result<void> runBuild(const BuildOptions& options) {
+// Does the work under a progress bar, and says what came of it.
+template <class Work>
+Result<void> run(Work work) {
     const auto began = std::chrono::steady_clock::now();
     Result<Manifest> manifest = [&] {
         ProgressBar progress;
-        return buildDataset(options, progress);
+        return work(progress);
     }();
     if (!manifest) return manifest.error();
     printSummary(*manifest, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
     return {};
+}
+
+}  // namespace
+
+Result<void> runBuild(const BuildOptions& options) {
+    return run([&](Progress& progress) { return buildDataset(options, progress); });
+}
+
+Result<void> runInsert(const BuildOptions& options) {
+    return run([&](Progress& progress) { return insertIntoDataset(options, progress); });
 }
 
 }  // namespace iwalk

@@ -4,12 +4,16 @@
 
 #include "common/result.hpp"
 #include "preprocess/build/build.hpp"
+#include "preprocess/generate/generate.hpp"
 
 // The subcommands, after the command line is understood. What they have to say goes to standard output.
 namespace iwalk {
 
 Result<void> runBuild(const BuildOptions& options);
-Result<void> runInfo(const std::string& dataset, bool json);
+Result<void> runInsert(const BuildOptions& options);
+Result<void> runGenerate(const GenerateOptions& options);
+// `picture`: a PNG file to draw the octree into; empty: none.
+Result<void> runInfo(const std::string& dataset, bool json, const std::string& picture);
 Result<void> runVerify(const std::string& dataset, bool json);
 
 }  // namespace iwalk

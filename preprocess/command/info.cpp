@@ -1,33 +1,22 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
-#include "common/dataset/hierarchy.hpp"
 #include "common/settings.hpp"
 #include "preprocess/command/commands.hpp"
+#include "preprocess/command/summary.hpp"
 
 namespace iwalk {
 namespace {
 
 using nlohmann::ordered_json;
-
-// What one depth of the tree has.
-struct DepthSummary {
-    std::uint64_t nodes = 0, leaves = 0, triangles = 0;
-};
-
-std::vector<DepthSummary> summarise(const Hierarchy& hierarchy) {
-    std::vector<DepthSummary> depths;
-    for (const NodeRecord& node : hierarchy.nodes) {
-        if (node.depth >= depths.size()) depths.resize(std::size_t{node.depth} + 1);
-        DepthSummary& depth = depths[node.depth];
-        ++depth.nodes;
-        depth.leaves += node.childMask == 0 ? 1 : 0;
-        depth.triangles += node.triangles;
-    }
-    return depths;
-}
 
 std::uint64_t bytesOnDisk(const Manifest& manifest) {
     std::uint64_t bytes = manifest.hierarchy.bytes;
@@ -39,13 +28,27 @@ double ratio(std::uint64_t a, std::uint64_t b) {
     return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
 }
 
-std::uint64_t rangesOf(const Hierarchy& hierarchy) {
-    std::uint64_t ranges = 0;
-    for (const PageRecord& page : hierarchy.pages) ranges += page.rangeCount;
-    return ranges;
+ordered_json levelJson(const LevelSummary& level, const StoredLevel& stored) {
+    return {{"error", level.error},  {"triangles", level.triangles},
+            {"bytes", level.bytes},  {"entries", stored.entries},
+            {"pages", stored.pages}, {"stored_triangles", stored.triangles}};
 }
 
-ordered_json toJson(const Manifest& manifest, const Hierarchy& hierarchy) {
+void addTreeJson(const Manifest& manifest, const Summary& summary, ordered_json& json) {
+    json["depths"] = ordered_json::array();
+    for (const DepthSummary& depth : summary.depths) {
+        json["depths"].push_back(
+            {{"nodes", depth.nodes}, {"leaves", depth.leaves}, {"triangles", depth.triangles}});
+    }
+    json["levels"] = ordered_json::array();
+    for (std::size_t level = 0; level < manifest.levels.size(); ++level) {
+        json["levels"].push_back(levelJson(manifest.levels[level], summary.levels[level]));
+    }
+    json["full"] = levelJson(manifest.full, summary.full);
+    if (summary.hasOpacity) json["opacity_histogram"] = summary.opacities;
+}
+
+ordered_json toJson(const Manifest& manifest, const Hierarchy& hierarchy, const Summary& summary) {
     ordered_json json;
     json["version"] = kDatasetVersion;
     json["generation"] = manifest.generation;
@@ -56,17 +59,14 @@ ordered_json toJson(const Manifest& manifest, const Hierarchy& hierarchy) {
     json["nodes"] = manifest.nodes;
     json["leaves"] = manifest.leaves;
     json["pages"] = manifest.pages;
-    json["ranges"] = rangesOf(hierarchy);
+    json["leaf_triangles"] = manifest.leafTriangles;
+    json["ranges"] = summary.ranges;
     json["attributes"] = {{"colors", manifest.colors}, {"normals", manifest.normals}};
     json["bounds"]["min"] = {manifest.bounds.min.x, manifest.bounds.min.y, manifest.bounds.min.z};
     json["bounds"]["max"] = {manifest.bounds.max.x, manifest.bounds.max.y, manifest.bounds.max.z};
     json["step_exponent"] = manifest.stepExponent;
     json["root_cell_log2"] = hierarchy.rootCellLog2;
-    json["depths"] = ordered_json::array();
-    for (const DepthSummary& depth : summarise(hierarchy)) {
-        json["depths"].push_back(
-            {{"nodes", depth.nodes}, {"leaves", depth.leaves}, {"triangles", depth.triangles}});
-    }
+    addTreeJson(manifest, summary, json);
     json["provenance"] = ordered_json::array();
     for (const Provenance& input : manifest.provenance) {
         json["provenance"].push_back({{"input", input.input},
@@ -77,24 +77,47 @@ ordered_json toJson(const Manifest& manifest, const Hierarchy& hierarchy) {
     return json;
 }
 
-void printTree(const Manifest& manifest, const Hierarchy& hierarchy) {
-    fmt::print("tree:       {} nodes, {} leaves\n", manifest.nodes, manifest.leaves);
-    const std::vector<DepthSummary> depths = summarise(hierarchy);
-    for (std::size_t depth = 0; depth < depths.size(); ++depth) {
-        fmt::print("  depth {:2}: {:8} nodes {:8} leaves {:12} triangles\n", depth, depths[depth].nodes,
-                   depths[depth].leaves, depths[depth].triangles);
+void printTree(const Manifest& manifest, const Summary& summary) {
+    fmt::print("tree:       {} nodes, {} leaves; nodes with more than {} triangles are split\n",
+               manifest.nodes, manifest.leaves, manifest.leafTriangles);
+    for (std::size_t depth = 0; depth < summary.depths.size(); ++depth) {
+        const DepthSummary& at = summary.depths[depth];
+        fmt::print("  depth {:2}: {:8} nodes {:8} leaves {:12} triangles\n", depth, at.nodes, at.leaves,
+                   at.triangles);
     }
-    const std::uint64_t pages = manifest.pages, ranges = rangesOf(hierarchy);
-    std::uint64_t wide = 0, bytes = 0;
-    for (const PageRecord& page : hierarchy.pages) {
-        wide += (page.flags & kPageWide) != 0 ? 1 : 0;
-        bytes += page.bytes;
-    }
-    fmt::print("pages:      {} of {} on average, {} wide; {} ranges of {:.0f} triangles on average\n", pages,
-               formatBytes(pages == 0 ? 0 : bytes / pages), wide, ranges, ratio(manifest.triangles, ranges));
 }
 
-void print(const Manifest& manifest, const Hierarchy& hierarchy) {
+void printLevel(const std::string& name, const LevelSummary& level, const StoredLevel& stored) {
+    fmt::print("  level {:>4}: {:12} triangles, error {:<11.5g} {:8} entries {:7} pages {:>9}\n", name,
+               level.triangles, level.error, stored.entries, stored.pages, formatBytes(level.bytes));
+}
+
+void printLevels(const Manifest& manifest, const Summary& summary) {
+    fmt::print("levels:     triangles of the whole model; error in model units\n");
+    for (std::size_t level = 0; level < manifest.levels.size(); ++level) {
+        printLevel(std::to_string(level), manifest.levels[level], summary.levels[level]);
+    }
+    printLevel("full", manifest.full, summary.full);
+    fmt::print("pages:      {} of {} on average, {} wide; {} ranges of {:.0f} triangles on average\n",
+               manifest.pages, formatBytes(manifest.pages == 0 ? 0 : summary.pageBytes / manifest.pages),
+               summary.widePages, summary.ranges, ratio(summary.triangles, summary.ranges));
+    if (summary.morphBytes > 0) fmt::print("morphs:     {}\n", formatBytes(summary.morphBytes));
+}
+
+void printOpacities(const Summary& summary) {
+    if (!summary.hasOpacity) return;
+    const std::uint64_t all =
+        std::accumulate(summary.opacities.begin(), summary.opacities.end(), std::uint64_t{0});
+    fmt::print("opacity:    of the leaves, in {} directions\n", kOpacityDirections);
+    for (std::size_t bin = 0; bin < kOpacityBins; ++bin) {
+        const double part = ratio(summary.opacities[bin], all);
+        fmt::print("  {:.1f} to {:.1f}: {:5.1f} % {}\n", static_cast<double>(bin) / kOpacityBins,
+                   static_cast<double>(bin + 1) / kOpacityBins, 100 * part,
+                   std::string(static_cast<std::size_t>(std::lround(60 * part)), '#'));
+    }
+}
+
+void print(const Manifest& manifest, const Hierarchy& hierarchy, const Summary& summary) {
     const glm::dvec3 &low = manifest.bounds.min, &high = manifest.bounds.max;
     fmt::print("version:    {}, generation {}\n", kDatasetVersion, manifest.generation);
     fmt::print("triangles:  {}\nvertices:   {} in pages\n", manifest.triangles, manifest.vertices);
@@ -106,24 +129,38 @@ void print(const Manifest& manifest, const Hierarchy& hierarchy) {
                high.x, high.y, high.z);
     fmt::print("lattice:    step 2^{} = {:g} model units, root cell of 2^{} steps\n", manifest.stepExponent,
                std::ldexp(1.0, manifest.stepExponent), hierarchy.rootCellLog2);
-    printTree(manifest, hierarchy);
+    printTree(manifest, summary);
+    printLevels(manifest, summary);
+    printOpacities(summary);
     for (const Provenance& input : manifest.provenance) {
         fmt::print("input:      {}: {} triangles; left out: {} not finite, {} degenerate\n", input.input,
                    input.triangles, input.droppedNonFinite, input.droppedDegenerate);
     }
 }
 
+// Becomes the program that draws, which is beside this one. What it takes to write PNG files is loaded when a
+// program starts: 128 MB that builds would have to do without.
+Result<void> drawPicture(const std::string& dataset, const std::string& picture) {
+    std::error_code error;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+    const std::string program = self.parent_path() / "iwalk-octree-picture";
+    ::execl(program.c_str(), program.c_str(), dataset.c_str(), picture.c_str(), nullptr);
+    return fail("{}: cannot be started: {}", program, std::strerror(errno));
+}
+
 }  // namespace
 
-Result<void> runInfo(const std::string& dataset, bool json) {
+Result<void> runInfo(const std::string& dataset, bool json, const std::string& picture) {
     ASSIGN_OR_RETURN(const Manifest manifest, loadManifest(dataset));
     ASSIGN_OR_RETURN(const Hierarchy hierarchy, loadHierarchy(dataset, manifest));
+    const Summary summary = summarise(hierarchy);
     if (json) {
-        fmt::print("{}\n", toJson(manifest, hierarchy).dump(2));
+        fmt::print("{}\n", toJson(manifest, hierarchy, summary).dump(2));
     } else {
-        print(manifest, hierarchy);
+        print(manifest, hierarchy, summary);
     }
-    return {};
+    std::fflush(stdout);
+    return picture.empty() ? Result<void>() : drawPicture(dataset, picture);
 }
 
 }  // namespace iwalk

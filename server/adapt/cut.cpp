@@ -2,10 +2,15 @@
 
 namespace iwalk {
 
-Cut fullResolution(const Hierarchy& hierarchy) {
+Cut cutAtLevel(const Hierarchy& hierarchy, unsigned level) {
     Cut cut;
-    cut.drawn.reserve(hierarchy.nodes.size());
-    for (const NodeRecord& node : hierarchy.nodes) cut.drawn.push_back(node.pageCount > 0);
+    cut.entry.reserve(hierarchy.nodes.size());
+    for (const NodeRecord& node : hierarchy.nodes) {
+        const LevelRecord* entry = hierarchy.drawnAt(node, level);
+        const auto index =
+            entry != nullptr ? entry - hierarchy.entries.data() : std::ptrdiff_t{Cut::kNothing};
+        cut.entry.push_back(static_cast<std::uint32_t>(index));
+    }
     return cut;
 }
 

@@ -7,12 +7,14 @@
 
 namespace iwalk {
 
-// The set of (node, level) that covers the model once. Datasets hold only the full resolution so far, so a
-// node is either in the cut with its own triangles or adds nothing.
+// The set of (node, level) that covers the model once: of each node at most one entry is drawn. Below an
+// entry that is of all that its node contains (Hierarchy::isWhole) nothing is.
 struct Cut {
-    std::vector<bool> drawn;  // by node
+    static constexpr std::uint32_t kNothing = 0xffffffff;
+    std::vector<std::uint32_t> entry;  // by node: index in Hierarchy::entries, or kNothing
 };
 
-Cut fullResolution(const Hierarchy& hierarchy);
+// All of the model at one level; where the dataset has nothing as fine, and with kFullLevel, the input.
+Cut cutAtLevel(const Hierarchy& hierarchy, unsigned level);
 
 }  // namespace iwalk

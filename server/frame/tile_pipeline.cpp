@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 
+#include "common/dataset/page_files.hpp"
+
 namespace iwalk {
 namespace {
 
@@ -56,16 +58,6 @@ Result<std::uint64_t> arenaBytes(const Hierarchy& hierarchy, std::uint64_t cache
     return std::min(all, cacheBytes);
 }
 
-Result<std::vector<std::unique_ptr<RandomAccessFile>>> openPageFiles(const Dataset& dataset) {
-    std::vector<std::unique_ptr<RandomAccessFile>> files;
-    for (const DatasetFile& file : dataset.manifest.pageFiles) {
-        ASSIGN_OR_RETURN(std::unique_ptr<RandomAccessFile> opened,
-                         openForReading(dataset.path + "/" + file.name));
-        files.push_back(std::move(opened));
-    }
-    return files;
-}
-
 SceneLook lookOf(const Dataset& dataset, const Settings& settings) {
     SceneLook look;
     look.stepExponent = dataset.manifest.stepExponent;
@@ -92,12 +84,12 @@ Result<Dataset> openDataset(const std::string& path) {
 
 Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& dataset, const Wall& wall,
                                                            std::size_t tile, const Settings& settings) {
-    std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile));
+    std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile, settings.level));
     const PixelRect& rect = wall.tiles[tile].onScreen;
     ASSIGN_OR_RETURN(pipeline->renderer_, Renderer::create(rect, lookOf(dataset, settings)));
     ASSIGN_OR_RETURN(const std::uint64_t bytes, arenaBytes(dataset.hierarchy, settings.cacheBytes));
     ASSIGN_OR_RETURN(std::vector<std::span<std::byte>> memory, pipeline->renderer_->lendArena(bytes));
-    ASSIGN_OR_RETURN(std::vector<std::unique_ptr<RandomAccessFile>> files, openPageFiles(dataset));
+    ASSIGN_OR_RETURN(PageFiles files, openPageFiles(dataset.path, dataset.manifest));
     pipeline->cache_ = std::make_unique<PageCache>(dataset.hierarchy, std::move(files),
                                                    Arena(std::move(memory), Renderer::kArenaAlignment),
                                                    settings.fetchThreads);

@@ -34,11 +34,11 @@ class TilePipeline {
     Renderer& renderer() { return *renderer_; }
 
   private:
-    TilePipeline(const Dataset& dataset, const Wall& wall, std::size_t tile)
+    TilePipeline(const Dataset& dataset, const Wall& wall, std::size_t tile, std::uint8_t level)
         : dataset_(dataset),
           wall_(wall),
           tile_(tile),
-          cut_(fullResolution(dataset.hierarchy)),
+          cut_(cutAtLevel(dataset.hierarchy, level)),
           visibility_(dataset.hierarchy) {}
 
     TileView viewOf(const FrameState& state) const;

@@ -29,12 +29,12 @@ double squaredDistance(const LatticeEye& eye, const LatticeBox& box) {
     return glm::dot(outside, outside);
 }
 
-void addOwn(const Hierarchy& hierarchy, const NodeRecord& node, std::vector<VisibleRanges>& found) {
-    if (node.pageCount == 1) {
-        found.push_back({node.firstPage, node.firstRange, node.rangeCount});
+void addEntry(const Hierarchy& hierarchy, const LevelRecord& entry, std::vector<VisibleRanges>& found) {
+    if (entry.pageCount == 1) {
+        found.push_back({entry.firstPage, entry.firstRange, entry.rangeCount});
         return;
     }
-    for (std::uint32_t page = node.firstPage; page < node.firstPage + node.pageCount; ++page)
+    for (std::uint32_t page = entry.firstPage; page < entry.firstPage + entry.pageCount; ++page)
         found.push_back({page, 0, hierarchy.pages[page].rangeCount});
 }
 
@@ -43,8 +43,9 @@ void addOwn(const Hierarchy& hierarchy, const NodeRecord& node, std::vector<Visi
 FrustumVisibility::FrustumVisibility(const Hierarchy& hierarchy)
     : hierarchy_(hierarchy), pageBoxes_(hierarchy.pages.size()) {
     for (const NodeRecord& node : hierarchy.nodes)
-        for (std::uint32_t page = node.firstPage; page < node.firstPage + node.pageCount; ++page)
-            pageBoxes_[page].add(Hierarchy::ownBox(node));
+        for (const LevelRecord& entry : hierarchy.entriesOf(node))
+            for (std::uint32_t page = entry.firstPage; page < entry.firstPage + entry.pageCount; ++page)
+                pageBoxes_[page].add(Hierarchy::entryBox(node, entry));
 }
 
 std::vector<VisibleRanges> FrustumVisibility::visible(const Cut& cut, const Frustum& frustum,
@@ -57,7 +58,12 @@ std::vector<VisibleRanges> FrustumVisibility::visible(const Cut& cut, const Frus
         open.pop_back();
         const NodeRecord& node = hierarchy_.nodes[index];
         if (!meets(frustum, eye, Hierarchy::box(node))) continue;
-        if (cut.drawn[index] && meets(frustum, eye, Hierarchy::ownBox(node))) addOwn(hierarchy_, node, found);
+        if (cut.entry[index] != Cut::kNothing) {
+            const LevelRecord& entry = hierarchy_.entries[cut.entry[index]];
+            const bool whole = Hierarchy::isWhole(node, entry);
+            if (whole || meets(frustum, eye, Hierarchy::ownBox(node))) addEntry(hierarchy_, entry, found);
+            if (whole) continue;
+        }
         for (int c = 0; c < Hierarchy::childCount(node); ++c)
             open.push_back(node.firstChild + static_cast<std::uint32_t>(c));
     }

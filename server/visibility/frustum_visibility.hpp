@@ -33,7 +33,7 @@ class FrustumVisibility {
 
   private:
     const Hierarchy& hierarchy_;
-    std::vector<LatticeBox> pageBoxes_;  // around all triangles of a page
+    std::vector<LatticeBox> pageBoxes_;  // around all entries of a page
 };
 
 // The ranges among `table.ranges[first, first + count)` whose boxes meet the frustum, neighbours joined to

@@ -75,6 +75,18 @@ TEST(FileTest, ReplacingLeavesNothingBeside) {
     EXPECT_FALSE(replaceFile(directory.path("missing/a"), "x").ok());
 }
 
+TEST(FileTest, OverwritesWhatItWrote) {
+    const TempDirectory directory;
+    auto output = OutputFile::create(directory.path("a"));
+    ASSERT_TRUE(output.ok());
+    ASSERT_TRUE(output->write(std::as_bytes(std::span("0 vertices", 10))).ok());
+    ASSERT_TRUE(output->overwrite(0, std::as_bytes(std::span("7", 1))).ok());
+    ASSERT_TRUE(output->write(std::as_bytes(std::span(" here", 5))).ok());
+    EXPECT_EQ(output->size(), 15u);
+    ASSERT_TRUE(output->sync().ok());
+    EXPECT_EQ(readWholeFile(directory.path("a"), 100).value(), "7 vertices here");
+}
+
 // A limit on file sizes stands in for a full disk.
 TEST(FileTest, AFullDiskIsAnErrorThatNamesTheFile) {
     const TempDirectory directory;

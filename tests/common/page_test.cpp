@@ -2,34 +2,23 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "tests/common/page_sample.hpp"
+
 namespace iwalk {
 namespace {
 
-// A strip of triangles in two ranges; offsets below 2^bits.
-PageGeometry makePage(std::uint32_t triangles, int bits, std::uint32_t attributes) {
-    std::mt19937 random(7);
-    PageGeometry page;
-    page.origin = LatticePoint(-5, std::int64_t{1} << 40, 17);
-    page.attributes = attributes;
-    const std::uint32_t mask = static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
-    for (std::uint32_t v = 0; v < triangles + 2; ++v) {
-        PageVertex vertex{};
-        for (std::uint32_t& axis : vertex.offset) axis = static_cast<std::uint32_t>(random()) & mask;
-        if ((attributes & kPageColors) != 0) vertex.color = static_cast<std::uint32_t>(random());
-        if ((attributes & kPageNormals) != 0) vertex.normal = static_cast<std::uint32_t>(random());
-        page.vertices.push_back(vertex);
-    }
-    page.vertices[0].offset[2] = mask;
-    for (std::uint32_t i = 0; i < 3 * triangles; ++i)
-        page.indices.push_back(static_cast<std::uint16_t>(i / 3 + i % 3));
-    const std::uint32_t half = triangles / 2 * 3;
-    page.ranges.push_back({0, half, {1, 2, 3}, {4, 5, 6}});
-    page.ranges.push_back({half, 3 * triangles - half, {0, 0, 0}, {mask, mask, mask}});
-    return page;
+PageRecord makeRecord(std::uint32_t flags) {
+    PageRecord record{};
+    record.bytes = 1000;
+    record.vertexCount = 3, record.indexCount = 6, record.rangeCount = 1;
+    record.flags = flags;
+    return record;
 }
 
 // A triangle as a cyclic order starting at its smallest corner: the index codec may rotate triangles.
@@ -88,7 +77,7 @@ TEST(PageTest, RoundTripsTheSmallestAndTheLargest) {
 }
 
 TEST(PageTest, LayoutIsAlignedAndInOrder) {
-    const PageRecord record{0, 0, 1000, 3, 6, 1, kPageWide | kPageColors | kPageNormals};
+    const PageRecord record = makeRecord(kPageWide | kPageColors | kPageNormals);
     const PageLayout layout = pageLayout(record);
     EXPECT_EQ(layout.positions, 0u);
     EXPECT_EQ(layout.positionStride, 12u);
@@ -98,81 +87,21 @@ TEST(PageTest, LayoutIsAlignedAndInOrder) {
     EXPECT_EQ(layout.bytes, 256u);
 }
 
-// The first bytes of version 0, as docs/format.md has them.
-TEST(PageTest, GoldenHeader) {
-    const PageGeometry page = makePage(2, 3, kPageNormals);
-    PageRecord record{};
-    const std::vector<std::byte> bytes = encodePage(page, record);
-    std::array<std::uint32_t, 6> head{};
-    std::memcpy(head.data(), bytes.data(), sizeof(head));
-    EXPECT_EQ(head, (std::array<std::uint32_t, 6>{0x47505749, 0, kPageNormals, 4, 6, 2}));
-    EXPECT_EQ(std::memcmp(bytes.data(), "IWPG", 4), 0);
-    std::array<std::int64_t, 3> origin{};
-    std::memcpy(origin.data(), bytes.data() + 24, sizeof(origin));
-    EXPECT_EQ(origin, (std::array<std::int64_t, 3>{-5, std::int64_t{1} << 40, 17}));
-    std::array<std::uint32_t, 2> ranges{};
-    std::memcpy(ranges.data(), bytes.data() + 48, sizeof(ranges));
-    EXPECT_EQ(ranges, (std::array<std::uint32_t, 2>{136, 64}));  // the range table: two ranges of 32 bytes
-    std::array<std::byte, 16> colors{};
-    std::memcpy(colors.data(), bytes.data() + 48 + 2 * 16, sizeof(colors));
-    EXPECT_EQ(colors, (std::array<std::byte, 16>{}));  // no colours: blank
-}
-
-TEST(PageTest, EveryTruncationIsFound) {
-    const PageGeometry page = makePage(20, 21, kPageColors);
-    PageRecord record{};
-    const std::vector<std::byte> bytes = encodePage(page, record);
-    std::vector<std::byte> out(pageLayout(record).bytes);
-    for (std::size_t length = 0; length < bytes.size(); ++length) {
-        PageRecord shorter = record;
-        shorter.bytes = static_cast<std::uint32_t>(length);
-        EXPECT_FALSE(decodePage(std::span(bytes).first(length), record, out).ok()) << length;
-        EXPECT_FALSE(decodePage(std::span(bytes).first(length), shorter, out).ok()) << length;
-    }
-}
-
-TEST(PageTest, EveryFlippedByteIsFound) {
-    const PageGeometry page = makePage(20, 21, kPageColors | kPageNormals);
-    PageRecord record{};
-    std::vector<std::byte> bytes = encodePage(page, record);
-    std::vector<std::byte> out(pageLayout(record).bytes);
-    for (std::byte& byte : bytes) {
-        byte ^= std::byte{0x10};
-        EXPECT_FALSE(decodePage(bytes, record, out).ok()) << &byte - bytes.data();
-        byte ^= std::byte{0x10};
-    }
-    EXPECT_TRUE(decodePage(bytes, record, out).ok());
-}
-
-// Checksums that are right do not make the contents right.
-TEST(PageTest, WrongContentsUnderRightChecksumsAreFound) {
-    const auto decodes = [](const PageGeometry& page) {
-        PageRecord record{};
-        const std::vector<std::byte> bytes = encodePage(page, record);
-        std::vector<std::byte> out(pageLayout(record).bytes);
-        return decodePage(bytes, record, out).ok();
-    };
-    const PageGeometry good = makePage(20, 21, 0);
-    ASSERT_TRUE(decodes(good));
-    PageGeometry bad = good;
-    bad.indices[10] = static_cast<std::uint16_t>(bad.vertices.size());
-    EXPECT_FALSE(decodes(bad)) << "index out of range";
-    bad = good, bad.ranges[1].firstIndex += 3;
-    EXPECT_FALSE(decodes(bad)) << "gap between ranges";
-    bad = good, bad.ranges[1].indexCount -= 3;
-    EXPECT_FALSE(decodes(bad)) << "ranges end early";
-    bad = good, bad.ranges[1].indexCount += 3;
-    EXPECT_FALSE(decodes(bad)) << "ranges end late";
-    bad = good, bad.ranges[0].indexCount = 0;
-    EXPECT_FALSE(decodes(bad)) << "empty range";
-    bad = good, bad.ranges[0].boxMin[1] = 6;
-    EXPECT_FALSE(decodes(bad)) << "box inside out";
-    bad = good, bad.origin.x = kLatticeLimit + 1;
-    EXPECT_FALSE(decodes(bad)) << "origin out of bounds";
+TEST(PageTest, PathsNameCells) {
+    EXPECT_TRUE(isPath(kRootPath));
+    EXPECT_TRUE(isPath(0x7fffffff));
+    EXPECT_EQ(pathLevels(kRootPath), 0u);
+    EXPECT_EQ(pathLevels(0b1'101'011), 2u);
+    EXPECT_EQ(pathLevels(0x7fffffff), kMaxPathLevels);
+    EXPECT_TRUE(pathContains(kRootPath, 0x7fffffff));
+    EXPECT_TRUE(pathContains(0b1'101, 0b1'101'011));
+    EXPECT_TRUE(pathContains(0b1'101, 0b1'101));
+    EXPECT_FALSE(pathContains(0b1'101'011, 0b1'101));
+    EXPECT_FALSE(pathContains(0b1'100, 0b1'101'011));
 }
 
 TEST(PageTest, ImpossibleRecordsAreRefused) {
-    const PageRecord good{0, 0, 1000, 3, 6, 1, 0};
+    const PageRecord good = makeRecord(0);
     EXPECT_TRUE(checkPageRecord(good).ok());
     const auto bad = [&](auto change) {
         PageRecord record = good;
@@ -185,7 +114,13 @@ TEST(PageTest, ImpossibleRecordsAreRefused) {
     EXPECT_TRUE(bad([](PageRecord& r) { r.indexCount = 0xffffffff; }));
     EXPECT_TRUE(bad([](PageRecord& r) { r.rangeCount = 3; }));
     EXPECT_TRUE(bad([](PageRecord& r) { r.rangeCount = 0; }));
-    EXPECT_TRUE(bad([](PageRecord& r) { r.flags = 8; }));
+    EXPECT_TRUE(bad([](PageRecord& r) { r.flags = 16; }));
+    EXPECT_TRUE(bad([](PageRecord& r) { r.flags = kMorphWide; }));
+    EXPECT_TRUE(bad([](PageRecord& r) { r.morphOffset = 1; }));
+    EXPECT_TRUE(bad([](PageRecord& r) { r.morphFile = 1; }));
+    EXPECT_TRUE(bad([](PageRecord& r) { r.morphBytes = 103; }));
+    EXPECT_TRUE(bad([](PageRecord& r) { r.morphBytes = kMaxPageBytes + 1; }));
+    EXPECT_TRUE(bad([](PageRecord& r) { r.reserved = 1; }));
     EXPECT_TRUE(bad([](PageRecord& r) { r.bytes = 100; }));
     EXPECT_TRUE(bad([](PageRecord& r) { r.bytes = kMaxPageBytes + 1; }));
 }

@@ -16,8 +16,8 @@ std::string refusal(const std::string& name, const std::string& text) {
 TEST(Settings, TableNamesEverySetting) {
     std::vector<std::string> names;
     for (const SettingInfo& info : settingTable()) names.emplace_back(info.name);
-    EXPECT_EQ(names,
-              (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background", "near"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background",
+                                               "near", "level"}));
 }
 
 TEST(Settings, DefaultsAreWhatTheHelpSays) {
@@ -41,7 +41,9 @@ TEST(Settings, TextIsReadBack) {
                                                           {"ramp", "height"},
                                                           {"ramp", "none"},
                                                           {"background", "#203040"},
-                                                          {"near", "0.1"}}) {
+                                                          {"near", "0.1"},
+                                                          {"level", "full"},
+                                                          {"level", "12"}}) {
         ASSERT_TRUE(setSetting(settings, name, text).ok()) << name << " " << text;
         EXPECT_EQ(settingText(settings, name), text);
     }
@@ -49,6 +51,7 @@ TEST(Settings, TextIsReadBack) {
     EXPECT_EQ(settings.background, 0x203040u);
     EXPECT_EQ(settings.near, 0.1);
     EXPECT_EQ(settings.shading, Shading::flat);
+    EXPECT_EQ(settings.level, 12);
     ASSERT_TRUE(setSetting(settings, "background", "ffffff").ok());
     EXPECT_EQ(settings.background, 0xffffffu);
 }
@@ -65,6 +68,8 @@ TEST(Settings, RefusalsNameTheSettingAndWhatIsRight) {
     }
     for (const char* bad : {"", "-1", "nan", "inf", "1e999", "1m"})
         EXPECT_NE(refusal("near", bad), "") << bad;
+    for (const char* bad : {"", "-1", "255", "256", "1.5", "finest"})
+        EXPECT_NE(refusal("level", bad), "") << bad;
     EXPECT_NE(refusal("ramp", "HEIGHT"), "");
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <random>
 
+#include "common/dataset/page.hpp"
 #include "preprocess/build/budget.hpp"
 #include "preprocess/build/grid.hpp"
 #include "preprocess/build/order.hpp"
@@ -58,12 +59,46 @@ TEST(GridTest, PlanSplitsWhatIsTooMuch) {
 TEST(OrderTest, RangesEndAtCells) {
     std::vector<std::uint64_t> keys;
     for (std::uint64_t cell = 0; cell < 8; ++cell) {
-        for (std::uint64_t i = 0; i < 200; ++i) keys.push_back(cell << 50 | i);
+        for (std::uint64_t i = 0; i < 300; ++i) keys.push_back(cell << 50 | i);
     }
-    EXPECT_EQ(cutRanges(keys), (std::vector<std::size_t>{400, 800, 1200, 1600}));
-    EXPECT_EQ(cutRanges(std::vector<std::uint64_t>(1000, 7)), (std::vector<std::size_t>{500, 1000}));
-    EXPECT_EQ(cutRanges(std::vector<std::uint64_t>(512, 7)), std::vector<std::size_t>{512});
-    EXPECT_EQ(cutRanges({}), std::vector<std::size_t>{});
+    // A node of 2^16 steps: three bits of a key for each level, the highest at 51.
+    const std::vector<CellRun> octants = cutRanges(keys, 16);
+    ASSERT_EQ(octants.size(), 8u);
+    for (std::uint32_t cell = 0; cell < 8; ++cell) {
+        EXPECT_EQ(octants[cell].end, 300 * (cell + 1));
+        EXPECT_EQ(octants[cell].path >> 3 * (pathLevels(octants[cell].path) - 2),
+                  0x40u | cell >> 1 << 3 | (cell & 1) << 2);
+    }
+    EXPECT_EQ(cutRanges({}, 16), std::vector<CellRun>{});
+}
+
+// The deepest cell that has all: a run of few triangles does not spread over the node.
+TEST(OrderTest, RangesKnowTheirCells) {
+    const auto key = [](std::uint64_t octants, unsigned levels) {
+        return octants << (kKeyBits - 3 * levels);
+    };
+    EXPECT_EQ(cutRanges(std::vector{key(025, 2), key(027, 2)}, 16), (std::vector<CellRun>{{2, 012}}));
+    EXPECT_EQ(cutRanges(std::vector{key(025, 2), key(037, 2)}, 16), (std::vector<CellRun>{{2, 1}}));
+    // Where paths end nothing tells triangles apart.
+    const std::uint32_t last = 1u << 30;
+    EXPECT_EQ(cutRanges(std::vector<std::uint64_t>(1000, 7), 16),
+              (std::vector<CellRun>{{500, last}, {1000, last}}));
+    EXPECT_EQ(cutRanges(std::vector<std::uint64_t>(512, 7), 16), (std::vector<CellRun>{{512, last}}));
+    // In a node of 4 steps they end early.
+    EXPECT_EQ(cutRanges(std::vector<std::uint64_t>(3, 052 << 6), 2), (std::vector<CellRun>{{3, 0152}}));
+}
+
+// A cell that goes on on the page before or after is split down to where the pages part.
+TEST(OrderTest, RangesEndWherePagesDo) {
+    const auto key = [](std::uint64_t octants) { return octants << (kKeyBits - 9); };
+    const std::vector<std::uint64_t> keys{key(0311), key(0312), key(0320), key(0370)};
+    EXPECT_EQ(cutRanges(keys, 16), (std::vector<CellRun>{{4, 013}}));
+    const KeysAround around{.before = key(0310), .after = key(0375)};
+    const std::vector<CellRun> runs = cutRanges(keys, 16, 0, around);
+    ASSERT_EQ(runs.size(), 4u);
+    for (const CellRun& run : runs) EXPECT_EQ(pathLevels(run.path), kMaxPathLevels);
+    EXPECT_EQ(cutRanges(keys, 16, 0, {.before = key(0200), .after = std::nullopt}),
+              (std::vector<CellRun>{{4, 013}}));
 }
 
 TEST(OrderTest, SortsByKeyAndKeepsTies) {
@@ -183,16 +218,23 @@ TEST(TreeTest, ChildrenStandInRows) {
     const std::uint32_t seven = tree.add(root, 7, 1);
     const std::uint32_t deep = tree.add(seven, 3, 2);
     const std::uint32_t two = tree.add(root, 2, 1);
-    const auto own = [&](std::uint32_t node, std::int64_t at) {
+    const auto own = [&](std::uint32_t node, std::uint32_t at) {
         setOwnBox(tree[node], LatticeBox{LatticePoint(at), LatticePoint(at + 1)});
-        tree[node].triangles = static_cast<std::uint64_t>(at);
+        tree.fullEntry(node).triangles = at;
     };
     own(deep, 10), own(two, 5);
-    const std::vector<NodeRecord> nodes = tree.finish();
+    const auto [nodes, entries, finest] = tree.finish();
     ASSERT_EQ(nodes.size(), 4u);
+    EXPECT_EQ(finest, (std::vector<int>{-1, 0, 0, 1}));
     EXPECT_EQ(nodes[0].childMask, 0b10000100);
     EXPECT_EQ(nodes[0].firstChild, 1u);
-    EXPECT_EQ(nodes[1].triangles, 5u);  // octant 2 before octant 7
+    ASSERT_EQ(entries.size(), 2u);
+    EXPECT_EQ(nodes[0].entryCount, 0u);
+    EXPECT_EQ(nodes[1].firstEntry, 0u);
+    EXPECT_EQ(entries[0].triangles, 5u);  // octant 2 before octant 7
+    EXPECT_EQ(nodes[2].firstEntry, 1u);
+    EXPECT_EQ(nodes[3].entryCount, 1u);
+    EXPECT_EQ(entries[1].level, kFullLevel);
     EXPECT_EQ(nodes[2].firstChild, 3u);
     EXPECT_EQ(Hierarchy::box(nodes[0]), (LatticeBox{LatticePoint(5), LatticePoint(11)}));
     EXPECT_EQ(Hierarchy::box(nodes[2]), (LatticeBox{LatticePoint(10), LatticePoint(11)}));

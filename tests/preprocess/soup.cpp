@@ -8,6 +8,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <random>
+#include <set>
 
 #include "common/dataset/hierarchy.hpp"
 #include "common/dataset/manifest.hpp"
@@ -149,7 +150,12 @@ std::vector<StoredTriangle> readTriangles(const std::string& dataset) {
     EXPECT_TRUE(hierarchy.ok()) << hierarchy.error().message;
     const auto file = openForReading(dataset + "/" + manifest->pageFiles.at(0).name);
     EXPECT_TRUE(file.ok());
-    for (const PageRecord& record : hierarchy->pages) appendPage(**file, record, triangles);
+    std::set<std::uint32_t> full;  // pages
+    for (const LevelRecord& entry : hierarchy->entries) {
+        for (std::uint32_t i = 0; entry.level == kFullLevel && i < entry.pageCount; ++i)
+            full.insert(entry.firstPage + i);
+    }
+    for (const std::uint32_t page : full) appendPage(**file, hierarchy->pages[page], triangles);
     std::ranges::sort(triangles);
     return triangles;
 }

@@ -45,7 +45,7 @@ class PageCacheTest : public ::testing::Test {
             PageGeometry page;
             for (std::uint32_t v = 0; v < 3; ++v) page.vertices.push_back({{p, v, v * v}, 0, 0});
             page.indices = {0, 1, 2};
-            page.ranges = {{0, 3, {p, 0, 0}, {p, 2, 4}}};
+            page.ranges = {{0, 3, kRootPath, {0, 0, 0}, {p, 2, 4}}};
             PageRecord record{};
             const std::vector<std::byte> bytes = encodePage(page, record);
             record.offset = file_->bytes.size();

@@ -204,6 +204,33 @@ TEST_F(RenderTest, CacheSizeAndThreadsDoNotChangeAPixel) {
     EXPECT_EQ(all.stats().triangles, batches.stats().triangles);
 }
 
+TEST_F(RenderTest, FinerThanAllLevelsIsTheInput) {
+    const Dataset dataset = build(sphere(1, 4));
+    const Wall wall = wallOf(320, 240, 1, 1);
+    Settings fine;
+    fine.level = 100;
+    expectSame(WallRenders(dataset, {}).draw(wall, kOutside),
+               WallRenders(dataset, fine).draw(wall, kOutside));
+}
+
+TEST_F(RenderTest, EveryLevelDrawsTheModel) {
+    const Dataset dataset = build(sphere(1, 6));
+    const Wall wall = wallOf(320, 240, 1, 1);
+    const auto covered = [](const Picture& picture) {
+        return std::ranges::count_if(picture.depth.pixels, [](float depth) { return depth > 0; });
+    };
+    const auto full = covered(WallRenders(dataset, {}).draw(wall, kOutside));
+    ASSERT_GE(dataset.manifest.levels.size(), 3u);
+    for (std::size_t level = 0; level < dataset.manifest.levels.size(); ++level) {
+        Settings settings;
+        settings.level = static_cast<std::uint8_t>(level);
+        WallRenders renders(dataset, settings);
+        const auto here = covered(renders.draw(wall, kOutside));
+        EXPECT_LT(std::abs(static_cast<double>(here - full)), 0.1 * static_cast<double>(full)) << level;
+        EXPECT_LE(renders.stats().triangles, dataset.manifest.levels[level].triangles) << level;
+    }
+}
+
 TEST_F(RenderTest, ACacheSmallerThanAPageIsRefused) {
     const Dataset dataset = build(sphere(1, 4));
     Settings settings;

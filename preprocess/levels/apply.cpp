@@ -1,0 +1,203 @@
+#include "preprocess/levels/apply.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "common/dataset/morph.hpp"
+#include "preprocess/levels/parallel.hpp"
+
+namespace iwalk {
+namespace {
+
+// Source triangles at once in memory, with what becomes of them; more only when a single node has more.
+constexpr std::uint64_t kChunkTriangles = 200'000;
+
+void addBox(NodeRecord& node, bool whole, const LatticeBox& box) {
+    auto& low = whole ? node.boxMin : node.ownMin;
+    auto& high = whole ? node.boxMax : node.ownMax;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], box.min[axis]);
+        high[axis] = std::max(high[axis], box.max[axis]);
+    }
+}
+
+}  // namespace
+
+LevelApplier::LevelApplier(LevelTools& tools, const Stage& stage, TargetBins& targets)
+    : tools_(tools), stage_(stage), targets_(targets), packer_(tools.format, tools.leafTriangles) {}
+
+Result<void> LevelApplier::run(const std::function<void(double)>& done) {
+    const std::vector<Job> jobs = planJobs();
+    // The first page that jobs from here on need.
+    std::vector<std::uint32_t> needed(jobs.size() + 1, static_cast<std::uint32_t>(stage_.changing));
+    for (std::size_t i = jobs.size(); i-- > 0;) needed[i] = std::min(needed[i + 1], jobs[i].firstPage);
+    for (std::size_t begin = 0, end = 0; begin < jobs.size(); begin = end) {
+        std::uint64_t triangles = 0;
+        std::uint32_t lastPage = 0;
+        for (; end < jobs.size() && (end == begin || triangles + jobs[end].triangles <= kChunkTriangles);
+             ++end) {
+            triangles += jobs[end].triangles;
+            lastPage = std::max(lastPage, jobs[end].lastPage);
+        }
+        RETURN_IF_ERROR(loadUpTo(lastPage + 1));
+        RETURN_IF_ERROR(makeEntries(std::span(jobs).subspan(begin, end - begin)));
+        RETURN_IF_ERROR(writePages());
+        release(needed[end]);
+        done(static_cast<double>(end) / static_cast<double>(jobs.size()));
+    }
+    RETURN_IF_ERROR(loadUpTo(static_cast<std::uint32_t>(stage_.changing)));
+    packer_.finish();
+    return writePages();
+}
+
+std::vector<LevelApplier::Job> LevelApplier::planJobs() const {
+    const LevelModel& model = tools_.model;
+    std::vector<Job> jobs;
+    for (const std::uint32_t node : model.depthFirst()) {
+        if (!model.hasWhole(node, stage_.level) && !model.hasOwn(node, stage_.level)) continue;
+        Job job{node, model.sourcesOf(node, stage_.level), std::numeric_limits<std::uint32_t>::max(), 0, 0};
+        for (const EntrySource& source : job.sources) {
+            job.triangles += source.entry.triangles;
+            if (source.held) continue;
+            const std::uint32_t first = source.entry.firstPage, last = first + source.entry.pageCount - 1;
+            job.firstPage = std::min(job.firstPage, stage_.places.at(first));
+            job.lastPage = std::max(job.lastPage, stage_.places.at(last));
+        }
+        jobs.push_back(std::move(job));
+    }
+    return jobs;
+}
+
+// The stage's pages before `end`, and their morph blocks to disk.
+Result<void> LevelApplier::loadUpTo(std::uint32_t end) {
+    const std::uint32_t step = 8 * static_cast<std::uint32_t>(tools_.arena.max_concurrency());
+    for (;;) {
+        const std::uint32_t begin = firstLoaded_ + static_cast<std::uint32_t>(loaded_.size());
+        if (begin >= end) return {};
+        RETURN_IF_ERROR(load(begin, std::min(end, begin + step)));
+    }
+}
+
+Result<void> LevelApplier::load(std::uint32_t begin, std::uint32_t end) {
+    loaded_.resize(end - firstLoaded_);
+    const auto at = [&](std::uint32_t index) -> Loaded& { return loaded_[index - firstLoaded_]; };
+    RETURN_IF_ERROR(parallelFor(tools_.arena, begin, end, [&](std::size_t i) -> Result<void> {
+        const StagePage& page = stage_.pages[i];
+        ASSIGN_OR_RETURN(at(static_cast<std::uint32_t>(i)).page, tools_.store.get(page.number, page.record));
+        return {};
+    }));
+    for (std::uint32_t i = begin; i < end; ++i) {
+        ASSIGN_OR_RETURN(at(i).targets, targets_.take(i, *at(i).page));
+    }
+    RETURN_IF_ERROR(parallelFor(tools_.arena, begin, end, [&](std::size_t i) -> Result<void> {
+        encodeMorph(static_cast<std::uint32_t>(i));
+        return {};
+    }));
+    for (std::uint32_t i = begin; i < end; ++i) {
+        RETURN_IF_ERROR(tools_.writer.appendMorph(stage_.pages[i].number, std::exchange(at(i).morph, {})));
+        for (const PageOwner& owner : stage_.pages[i].owners) {
+            LatticeBox box;
+            for (const Range& range :
+                 std::span(at(i).page->ranges).subspan(owner.firstRange, owner.rangeCount)) {
+                for (std::uint32_t k = range.firstIndex; k < range.firstIndex + range.indexCount; ++k) {
+                    const CellPoint& target = at(i).targets.positions[at(i).page->indices[k]];
+                    box.add(tools_.model.lattice.fromCell(target));
+                }
+            }
+            addBox(tools_.model.nodes[owner.node], owner.whole, box);
+        }
+    }
+    return {};
+}
+
+void LevelApplier::encodeMorph(std::uint32_t index) {
+    Loaded& loaded = loaded_[index - firstLoaded_];
+    const Lattice& lattice = tools_.model.lattice;
+    const auto lattices = [&](const std::vector<CellPoint>& points) {
+        std::vector<LatticePoint> result;
+        result.reserve(points.size());
+        for (const CellPoint& p : points) result.push_back(lattice.fromCell(p));
+        return result;
+    };
+    const SourcePage& page = *loaded.page;
+    const std::vector<LatticePoint> positions = lattices(page.positions);
+    const std::vector<LatticePoint> targets = lattices(loaded.targets.positions);
+    PageRecord& record = tools_.writer.record(stage_.pages[index].number);
+    const MorphSource source{lattice.fromCell(page.origin), positions, targets, page.ranges, page.indices};
+    loaded.morph = iwalk::encodeMorph(source, record);
+}
+
+Result<void> LevelApplier::makeEntries(std::span<const Job> jobs) {
+    std::vector<Slice> slices(jobs.size());
+    RETURN_IF_ERROR(parallelFor(tools_.arena, 0, jobs.size(), [&](std::size_t i) -> Result<void> {
+        ASSIGN_OR_RETURN(slices[i], makeSlice(jobs[i]));
+        return {};
+    }));
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        LevelRecord entry{};
+        entry.level = static_cast<std::uint8_t>(stage_.level);
+        // A bound for what has vanished, too.
+        for (const EntrySource& source : jobs[i].sources)
+            entry.error = std::max(entry.error, source.entry.error);
+        tools_.model.entries[jobs[i].node].push_back(entry);
+        packer_.add(std::move(slices[i]));
+    }
+    return {};
+}
+
+Result<Slice> LevelApplier::makeSlice(const Job& job) {
+    std::vector<LevelSource> sources;
+    std::vector<std::shared_ptr<const SourcePage>> held;
+    for (const EntrySource& source : job.sources) {
+        const LevelRecord& entry = source.entry;
+        for (std::uint32_t number = entry.firstPage; number < entry.firstPage + entry.pageCount; ++number) {
+            LevelSource part{nullptr, nullptr, 0, 0, source.way, source.wayLevels};
+            if (source.held) {
+                const PageRecord& record = stage_.pages[stage_.places.at(number)].record;
+                ASSIGN_OR_RETURN(std::shared_ptr<const SourcePage> page, tools_.store.get(number, record));
+                part.page = held.emplace_back(std::move(page)).get();
+            } else {
+                const Loaded& loaded = loaded_[stage_.places.at(number) - firstLoaded_];
+                part.page = loaded.page.get();
+                part.targets = &loaded.targets;
+            }
+            part.firstRange = entry.pageCount == 1 ? entry.firstRange : 0u;
+            part.rangeCount = entry.pageCount == 1 ? entry.rangeCount
+                                                   : static_cast<std::uint32_t>(part.page->ranges.size());
+            sources.push_back(part);
+        }
+    }
+    const LevelModel& model = tools_.model;
+    const unsigned depth = model.depth(job.node);
+    Slice slice = makeLevelSlice(tools_.format, model.lattice, sources, stage_.limits.error,
+                                 stage_.level + kRangeLevels - depth);
+    slice.node = job.node;
+    slice.edgeLog2 = model.lattice.rootCellLog2 - depth;
+    return slice;
+}
+
+Result<void> LevelApplier::writePages() {
+    LevelModel& model = tools_.model;
+    const auto add = [&](const NodeRanges& ranges) -> LevelRecord& {
+        addBox(model.nodes[ranges.node], model.hasWhole(ranges.node, stage_.level), ranges.box);
+        LevelRecord& entry = model.entries[ranges.node].back();
+        entry.error =
+            std::max(entry.error, static_cast<float>(ranges.error) * (stage_.limits.error / 255.0f));
+        return entry;
+    };
+    return tools_.writer.write(packer_.take(), add, tools_.arena);
+}
+
+// Pages before `end` are not needed any more.
+void LevelApplier::release(std::uint32_t end) {
+    while (!loaded_.empty() && firstLoaded_ < end) {
+        loaded_.pop_front();
+        ++firstLoaded_;
+    }
+}
+
+}  // namespace iwalk

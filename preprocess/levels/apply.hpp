@@ -1,0 +1,69 @@
+#pragma once
+
+#include <oneapi/tbb/task_arena.h>
+
+#include <deque>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "preprocess/build/packer.hpp"
+#include "preprocess/build/page_writer.hpp"
+#include "preprocess/levels/level_slice.hpp"
+#include "preprocess/levels/model.hpp"
+#include "preprocess/levels/stage.hpp"
+#include "preprocess/levels/targets.hpp"
+
+namespace iwalk {
+
+// What the passes share.
+struct LevelTools {
+    LevelModel& model;
+    RecordFormat format;  // of triangles with errors
+    std::uint32_t leafTriangles;
+    PageStore& store;
+    PageWriter& writer;
+    tbb::task_arena& arena;
+};
+
+// Applies a map of vertices: writes the morph blocks of the stage's pages, and the pages of the next coarser
+// level. Goes over the stage's pages once; those that the nodes under way need are in memory.
+class LevelApplier {
+  public:
+    LevelApplier(LevelTools& tools, const Stage& stage, TargetBins& targets);
+
+    Result<void> run(const std::function<void(double)>& done);
+
+  private:
+    // A stage page in memory, and where its vertices go.
+    struct Loaded {
+        std::shared_ptr<const SourcePage> page;
+        PageTargets targets;
+        std::vector<std::byte> morph;
+    };
+    // An entry to be made.
+    struct Job {
+        std::uint32_t node;
+        std::vector<EntrySource> sources;
+        std::uint32_t firstPage, lastPage;  // the stage's pages among those that it needs lie in here
+        std::uint64_t triangles;            // of the sources
+    };
+
+    std::vector<Job> planJobs() const;
+    Result<void> loadUpTo(std::uint32_t end);
+    Result<void> load(std::uint32_t begin, std::uint32_t end);
+    void encodeMorph(std::uint32_t index);
+    Result<void> makeEntries(std::span<const Job> jobs);
+    Result<Slice> makeSlice(const Job& job);
+    Result<void> writePages();
+    void release(std::uint32_t end);
+
+    LevelTools& tools_;
+    const Stage& stage_;
+    TargetBins& targets_;
+    Packer packer_;
+    std::deque<Loaded> loaded_;  // stage pages from firstLoaded_ on
+    std::uint32_t firstLoaded_ = 0;
+};
+
+}  // namespace iwalk

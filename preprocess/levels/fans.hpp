@@ -1,0 +1,79 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace iwalk {
+
+// The triangles around each point, as they change.
+class Fans {
+  public:
+    Fans(const std::vector<std::array<std::uint32_t, 3>>& triangles, std::size_t points) : places_(points) {
+        for (const auto& triangle : triangles) {
+            for (const std::uint32_t point : triangle) ++places_[point].count;
+        }
+        std::size_t next = 0;
+        for (Place& place : places_) {
+            place.first = next;
+            place.room = place.count;
+            next += place.count;
+            place.count = 0;
+        }
+        pool_.resize(next);
+        for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+            for (const std::uint32_t point : triangles[t]) {
+                Place& place = places_[point];
+                pool_[place.first + place.count++] = t;
+            }
+        }
+    }
+
+    std::span<const std::uint32_t> of(std::uint32_t point) const {
+        return {pool_.data() + places_[point].first, places_[point].count};
+    }
+
+    // Once; the order of the others stays.
+    void remove(std::uint32_t point, std::uint32_t triangle) {
+        Place& place = places_[point];
+        const auto begin = pool_.begin() + static_cast<std::ptrdiff_t>(place.first);
+        const auto end = begin + static_cast<std::ptrdiff_t>(place.count);
+        const auto found = std::find(begin, end, triangle);
+        if (found == end) return;
+        std::copy(found + 1, end, found);
+        --place.count;
+    }
+
+    void append(std::uint32_t point, std::span<const std::uint32_t> triangles) {
+        Place& place = places_[point];
+        const std::uint32_t count = place.count + static_cast<std::uint32_t>(triangles.size());
+        if (count > place.room) move(place, count);
+        std::ranges::copy(triangles, pool_.begin() + static_cast<std::ptrdiff_t>(place.first + place.count));
+        place.count = count;
+    }
+
+    void clear(std::uint32_t point) { places_[point].count = 0; }
+
+  private:
+    struct Place {
+        std::size_t first = 0;
+        std::uint32_t count = 0, room = 0;
+    };
+
+    // To the end of the pool, with room to grow.
+    void move(Place& place, std::uint32_t count) {
+        const std::size_t first = pool_.size();
+        place.room = count + count / 2;
+        pool_.resize(first + place.room);
+        std::copy_n(pool_.begin() + static_cast<std::ptrdiff_t>(place.first), place.count,
+                    pool_.begin() + static_cast<std::ptrdiff_t>(first));
+        place.first = first;
+    }
+
+    std::vector<Place> places_;
+    std::vector<std::uint32_t> pool_;
+};
+
+}  // namespace iwalk

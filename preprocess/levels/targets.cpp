@@ -1,0 +1,91 @@
+#include "preprocess/levels/targets.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace iwalk {
+namespace {
+
+constexpr std::size_t kBinVertices = std::size_t{1} << 18;
+constexpr std::size_t kMostBins = 512;
+
+// Consecutive pages share a bin while it has few vertices.
+std::vector<std::uint32_t> dealBins(const Stage& stage) {
+    std::size_t all = 0;
+    const std::span<const StagePage> changing = std::span(stage.pages).first(stage.changing);
+    for (const StagePage& page : changing) all += page.record.vertexCount;
+    const std::size_t perBin = std::max(kBinVertices, all / (kMostBins / 2));
+    std::vector<std::uint32_t> bins;
+    std::size_t inBin = 0;
+    std::uint32_t bin = 0;
+    for (const StagePage& page : changing) {
+        const std::size_t vertices = page.record.vertexCount;
+        if (inBin > 0 && inBin + vertices > perBin) ++bin, inBin = 0;
+        inBin += vertices;
+        bins.push_back(bin);
+    }
+    return bins;
+}
+
+bool comesBefore(const VertexTarget& a, const VertexTarget& b) {
+    return std::pair(a.stagePage, a.vertex) < std::pair(b.stagePage, b.vertex);
+}
+
+}  // namespace
+
+TargetBins::TargetBins(ChunkFile& file, const Stage& stage)
+    : file_(file),
+      stage_(stage),
+      binOf_(dealBins(stage)),
+      writer_(file, binOf_.empty() ? 1 : binOf_.back() + 1, kWords) {
+    static_assert(sizeof(VertexTarget) % 4 == 0 && std::is_trivially_copyable_v<VertexTarget>);
+}
+
+Result<void> TargetBins::add(std::span<const VertexTarget> targets) {
+    for (const VertexTarget& target : targets) {
+        ASSIGN_OR_RETURN(std::uint32_t* const place, writer_.append(binOf_[target.stagePage]));
+        std::memcpy(place, &target, sizeof(target));
+    }
+    return {};
+}
+
+Result<void> TargetBins::finish() {
+    ASSIGN_OR_RETURN(bins_, writer_.finish());
+    return {};
+}
+
+Result<void> TargetBins::load(std::size_t bin) {
+    loaded_ = bin;
+    targets_.clear();
+    BinReader reader(file_, std::move(bins_[bin]), kWords);
+    std::vector<std::uint32_t> words;
+    while (reader.left() > 0) {
+        words.clear();
+        RETURN_IF_ERROR(reader.next(words));
+        const std::size_t before = targets_.size();
+        targets_.resize(before + words.size() / kWords);
+        std::memcpy(static_cast<void*>(targets_.data() + before), words.data(), words.size() * 4);
+    }
+    std::sort(targets_.begin(), targets_.end(), comesBefore);
+    return {};
+}
+
+Result<PageTargets> TargetBins::take(std::uint32_t index, const SourcePage& page) {
+    if (binOf_[index] != loaded_) RETURN_IF_ERROR(load(binOf_[index]));
+    const std::vector<std::uint8_t>& errors = stage_.pages[index].errors;
+    PageTargets result{page.positions, std::vector<float>(page.positions.size(), 0.0f), page.colors,
+                       page.normals};
+    for (std::size_t v = 0; v < errors.size(); ++v) {
+        result.errors[v] = static_cast<float>(errors[v]) * (stage_.errorUnit / 255.0f);
+    }
+    const auto own = std::ranges::equal_range(targets_, index, {}, &VertexTarget::stagePage);
+    for (const VertexTarget& target : own) {
+        result.positions[target.vertex] = target.position;
+        result.errors[target.vertex] = target.error;
+        if (!page.colors.empty()) result.colors[target.vertex] = target.color;
+        if (!page.normals.empty()) result.normals[target.vertex] = target.normal;
+    }
+    return result;
+}
+
+}  // namespace iwalk

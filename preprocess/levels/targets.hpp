@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "preprocess/build/spill.hpp"
+#include "preprocess/levels/decide.hpp"
+
+namespace iwalk {
+
+// Where all vertices of a page go.
+struct PageTargets {
+    std::vector<CellPoint> positions;
+    std::vector<float> errors;                   // steps; of the points they go to
+    std::vector<std::uint32_t> colors, normals;  // as the page has them
+};
+
+// The targets that cells decide upon, sorted by pages in a spill file. Pages are read again in order.
+class TargetBins {
+  public:
+    TargetBins(ChunkFile& file, const Stage& stage);
+
+    Result<void> add(std::span<const VertexTarget> targets);  // one thread at a time
+    // All are added.
+    Result<void> finish();
+    // Targets of stage page `index`: those that were added, the vertices' own places for others. Each page
+    // once, in order of the index.
+    Result<PageTargets> take(std::uint32_t index, const SourcePage& page);
+
+  private:
+    static constexpr std::size_t kWords = sizeof(VertexTarget) / 4;
+    Result<void> load(std::size_t bin);
+
+    ChunkFile& file_;
+    const Stage& stage_;
+    std::vector<std::uint32_t> binOf_;  // by stage page
+    BinWriter writer_;
+    std::vector<Bin> bins_;
+    std::size_t loaded_ = SIZE_MAX;      // bin
+    std::vector<VertexTarget> targets_;  // of it, by page and vertex
+};
+
+}  // namespace iwalk

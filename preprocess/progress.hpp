@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+namespace iwalk {
+
+// Long work tells how far it is; rates and ETA are the listener's business.
+class Progress {
+  public:
+    virtual ~Progress() = default;
+    virtual void phase(const std::string& name) = 0;
+    virtual void done(double part) = 0;  // 0..1 of the phase
+};
+
+}  // namespace iwalk

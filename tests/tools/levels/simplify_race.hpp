@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tests/tools/levels/dataset_pages.hpp"
+#include "tests/tools/levels/deviation.hpp"
+
+namespace iwalk::levels {
+
+// A level beside what meshoptimizer's simplifier makes of the whole welded input at the same true error: the
+// 99.9th percentile of sampled distances, in the worse direction.
+struct SimplifyRace {
+    unsigned level = 0;
+    std::uint64_t triangles = 0, theirTriangles = 0;
+    double p999 = 0, theirP999 = 0;  // multiples of the level's stated error; theirs is at most ours
+    bool stuck = false;              // theirs could go no lower, whatever error it was allowed
+
+    double ratio() const { return static_cast<double>(triangles) / static_cast<double>(theirTriangles); }
+};
+
+Result<std::vector<SimplifyRace>> raceSimplify(const DatasetPages& pages, const SampleOptions& options);
+
+}  // namespace iwalk::levels
