@@ -126,7 +126,7 @@ class Build {
         malloc_trim(0);
         const RecordFormat format(lattice_.rootCellLog2, manifest_.colors, manifest_.normals, true);
         ASSIGN_OR_RETURN(ChunkFile spill, ChunkFile::create(output_.temporary("targets"), kTargetChunkBytes));
-        const LevelOptions options{options_.leafTriangles, pagesPath, budget_.batchBytes / 3,
+        const LevelOptions options{options_.leafTriangles, pagesPath, budget_.batchBytes / 5,
                                    budget_.threads};
         return makeLevels(model, format, options, writer, spill, progress_);
     }
