@@ -25,11 +25,23 @@ double uniform(std::mt19937_64& random, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
 }
 
+std::size_t looseBoxes(const RangeModel& model) {
+    return static_cast<std::size_t>(std::ranges::count_if(model.ranges(), [&](const CutRange& range) {
+        return range.parent != kNoRange && !model.ranges()[range.parent].box.contains(range.box);
+    }));
+}
+
+// From which on ranges morph to their next coarser level.
+double morphDistance(const CutRange& range, const std::vector<double>& distances) {
+    return range.next < 0 ? kFar : distances[static_cast<std::size_t>(range.next)];
+}
+
+}  // namespace
+
 double logUniform(std::mt19937_64& random, double low, double high) {
     return std::exp(uniform(random, std::log(low), std::log(high)));
 }
 
-// Half of all in the model's box, the others up to four diagonals away from its centre.
 glm::dvec3 randomEye(std::mt19937_64& random, const LatticeBox& box) {
     const glm::dvec3 min(box.min), max(box.max);
     if (uniform(random, 0, 1) < 0.5)
@@ -38,14 +50,6 @@ glm::dvec3 randomEye(std::mt19937_64& random, const LatticeBox& box) {
     const glm::dvec3 way(normal(random), normal(random), normal(random));
     return 0.5 * (min + max) + glm::distance(min, max) * logUniform(random, 0.3, 4) * glm::normalize(way);
 }
-
-std::size_t looseBoxes(const RangeModel& model) {
-    return static_cast<std::size_t>(std::ranges::count_if(model.ranges(), [&](const CutRange& range) {
-        return range.parent != kNoRange && !model.ranges()[range.parent].box.contains(range.box);
-    }));
-}
-
-}  // namespace
 
 std::vector<double> levelDistances(const std::vector<double>& errors, const std::vector<double>& diagonals,
                                    double scale, double screenError) {
@@ -66,18 +70,35 @@ bool CutDrawer::isDrawn(const CutRange& range, const glm::dvec3& eye,
     return range.parent == kNoRange || distanceToBox(eye, model_.ranges()[range.parent].box) < at(range.next);
 }
 
-// The number of the place where a vertex is drawn; places on the way have numbers beyond the others.
-std::uint32_t CutDrawer::cornerAt(const MorphVertex& vertex, const glm::dvec3& eye, double distance) const {
-    if (vertex.place == vertex.target) return vertex.place;
+glm::dvec3 CutDrawer::drawnAt(const MorphVertex& vertex, const glm::dvec3& eye, double distance) const {
     const glm::dvec3& p = model_.places()[vertex.place];
     const glm::dvec3& q = model_.places()[vertex.target];
     const double start = (1 - kBlendShare) * distance;
     const double w = std::clamp((glm::distance(eye, p) - start) / (kBlendShare * distance), 0.0, 1.0);
-    if (w == 1) return vertex.target;
-    const glm::dvec3 drawn = p + w * (q - p);
-    if (drawn == p) return vertex.place;
-    if (drawn == q) return vertex.target;
+    return p + w * (q - p);
+}
+
+// The number of the place where a vertex is drawn; places on the way have numbers beyond the others.
+std::uint32_t CutDrawer::cornerAt(const MorphVertex& vertex, const glm::dvec3& eye, double distance) const {
+    if (vertex.place == vertex.target) return vertex.place;
+    const glm::dvec3 drawn = drawnAt(vertex, eye, distance);
+    if (drawn == model_.places()[vertex.place]) return vertex.place;
+    if (drawn == model_.places()[vertex.target]) return vertex.target;
     return static_cast<std::uint32_t>(model_.places().size()) + vertex.between;
+}
+
+std::vector<tools::Triangle> CutDrawer::triangles(const glm::dvec3& eye,
+                                                  const std::vector<double>& distances) const {
+    std::vector<tools::Triangle> result;
+    for (const CutRange& range : model_.ranges()) {
+        if (!isDrawn(range, eye, distances)) continue;
+        const double distance = morphDistance(range, distances);
+        for (std::size_t i = 0; i < range.corners.size(); i += 3) {
+            tools::Triangle& triangle = result.emplace_back();
+            for (std::size_t c = 0; c < 3; ++c) triangle[c] = drawnAt(range.corners[i + c], eye, distance);
+        }
+    }
+    return result;
 }
 
 Cut CutDrawer::draw(const glm::dvec3& eye, const std::vector<double>& distances) {
@@ -92,7 +113,7 @@ Cut CutDrawer::draw(const glm::dvec3& eye, const std::vector<double>& distances)
     }
     corners_.clear();
     for (const CutRange* range : drawn) {
-        const double distance = range->next < 0 ? kFar : distances[static_cast<std::size_t>(range->next)];
+        const double distance = morphDistance(*range, distances);
         for (const MorphVertex& vertex : range->corners) corners_.push_back(cornerAt(vertex, eye, distance));
     }
     cut.openEdges = openEdges(corners_);

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <random>
 #include <vector>
 
+#include "tests/tools/bvh.hpp"
 #include "tests/tools/levels/range_model.hpp"
 
 namespace iwalk::levels {
@@ -17,6 +19,10 @@ inline constexpr double kDiagonalShare = 0.36;
 // steps; `scale`: px at distance 1 of something of size 1; `screenError`: px.
 std::vector<double> levelDistances(const std::vector<double>& errors, const std::vector<double>& diagonals,
                                    double scale, double screenError);
+
+// An eye that sees the model: half of all in its box, the others up to four diagonals away from its centre.
+glm::dvec3 randomEye(std::mt19937_64& random, const LatticeBox& box);
+double logUniform(std::mt19937_64& random, double low, double high);
 
 // What a cut drew.
 struct Cut {
@@ -32,9 +38,12 @@ class CutDrawer {
     Cut draw(const glm::dvec3& eye, const std::vector<double>& distances);
     // The whole input.
     Cut drawFull();
+    // The triangles of the same cut where they are drawn.
+    std::vector<tools::Triangle> triangles(const glm::dvec3& eye, const std::vector<double>& distances) const;
 
   private:
     bool isDrawn(const CutRange& range, const glm::dvec3& eye, const std::vector<double>& distances) const;
+    glm::dvec3 drawnAt(const MorphVertex& vertex, const glm::dvec3& eye, double distance) const;
     std::uint32_t cornerAt(const MorphVertex& vertex, const glm::dvec3& eye, double distance) const;
 
     const RangeModel& model_;

@@ -7,6 +7,7 @@
 
 #include "tests/tools/levels/open_edges.hpp"
 #include "tests/tools/levels/tube.hpp"
+#include "tests/tools/levels/views.hpp"
 
 namespace iwalk::levels {
 namespace {
@@ -152,6 +153,17 @@ TEST(RangeModel, DiagonalsCountTheInputForAllFinerLevels) {
     model.add({{LatticePoint(0), LatticePoint(6, 8, 0)}, model.fullLevel(), 1, 1, {}});
     EXPECT_EQ(model.diagonals(false), (std::vector<double>{50, 5, 0, 0}));
     EXPECT_EQ(model.diagonals(true), (std::vector<double>{50, 5, 10, 10}));
+}
+
+TEST(Views, ATubeInThreeResolutionsLetsNothingThrough) {
+    const ViewOptions options{20, 1, 64, 2, 20};
+    const ViewReport report = countHoles(makeTube(), kErrors, options);
+    EXPECT_EQ(report.holes, 0u);
+    EXPECT_GT(report.covered, 1000u);
+    RangeModel open = makeTube();
+    for (std::size_t i = 1; i < open.ranges().size(); i += 3) open.ranges()[i].corners.clear();  // level 1
+    for (std::size_t i = 0; i < open.ranges().size(); i += 3) open.ranges()[i].corners.clear();  // level 0
+    EXPECT_GT(countHoles(open, kErrors, options).holes, 0u);
 }
 
 }  // namespace

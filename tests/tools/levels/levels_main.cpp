@@ -23,6 +23,7 @@ struct Options {
     std::string dataset;
     SampleOptions sampling;
     CrackOptions cracks;
+    ViewOptions views;
     double limit = 1;
     bool json = false;
 };
@@ -34,14 +35,26 @@ Result<bool> runErrors(const DatasetPages& pages, const Options& options) {
     return largestRatio(levels) <= options.limit;
 }
 
-Result<bool> runCracks(const DatasetPages& pages, const Options& options) {
-    ASSIGN_OR_RETURN(RangeModel model, loadRangeModel(pages));
-    std::vector<double> errors;  // lattice steps
+// Of the levels, in lattice steps.
+std::vector<double> errorsOf(const DatasetPages& pages) {
+    std::vector<double> errors;
     for (const LevelSummary& level : pages.manifest().levels)
         errors.push_back(std::ldexp(level.error, -pages.manifest().stepExponent));
-    const CrackReport report = countCracks(std::move(model), errors, options.cracks);
+    return errors;
+}
+
+Result<bool> runCracks(const DatasetPages& pages, const Options& options) {
+    ASSIGN_OR_RETURN(RangeModel model, loadRangeModel(pages));
+    const CrackReport report = countCracks(std::move(model), errorsOf(pages), options.cracks);
     std::fputs((options.json ? cracksJson : cracksText)(report, options.cracks).c_str(), stdout);
     return report.looseBoxes == 0 && report.openEdges == 0;
+}
+
+Result<bool> runViews(const DatasetPages& pages, const Options& options) {
+    ASSIGN_OR_RETURN(const RangeModel model, loadRangeModel(pages));
+    const ViewReport report = countHoles(model, errorsOf(pages), options.views);
+    std::fputs((options.json ? viewsJson : viewsText)(report, options.views).c_str(), stdout);
+    return report.holes == 0;
 }
 
 Result<bool> runSimplify(const DatasetPages& pages, const Options& options) {
@@ -96,10 +109,24 @@ void addCracks(CLI::App& app, Options& options) {
         ->capture_default_str();
 }
 
+void addViews(CLI::App& app, Options& options) {
+    CLI::App* command =
+        addCommand(app, "views",
+                   "Background that shows through cuts for random eyes and screen errors, by rays", options);
+    command->add_option("--views", options.views.views, "Pictures")->capture_default_str();
+    command->add_option("--seed", options.views.seed, "Of the random numbers")->capture_default_str();
+    command->add_option("--size", options.views.size, "Width and height of a picture, px")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
+}
+
 Result<bool> run(const CLI::App& app, const Options& options) {
     ASSIGN_OR_RETURN(const DatasetPages pages, DatasetPages::open(options.dataset));
     const std::string command = app.get_subcommands().front()->get_name();
-    return (command == "errors" ? runErrors : command == "cracks" ? runCracks : runSimplify)(pages, options);
+    return (command == "errors"   ? runErrors
+            : command == "cracks" ? runCracks
+            : command == "views"  ? runViews
+                                  : runSimplify)(pages, options);
 }
 
 int failed(const char* message, const char* advice = "") {
@@ -115,6 +142,7 @@ int runProgram(int argc, char** argv) {
     Options options;
     addErrors(app, options);
     addCracks(app, options);
+    addViews(app, options);
     addSampling(addCommand(app, "simplify",
                            "Triangles of each level against meshoptimizer's at the same true error", options),
                 options.sampling);

@@ -106,6 +106,20 @@ std::string cracksJson(const CrackReport& r, const CrackOptions& options) {
                     {"loose_boxes", r.looseBoxes}});
 }
 
+std::string viewsText(const ViewReport& r, const ViewOptions& options) {
+    return fmt::format("{} views, {:.0f} triangles on average: {} of {} covered pixels show the background\n",
+                       options.views, share(r.triangles, options.views), r.holes, r.covered);
+}
+
+std::string viewsJson(const ViewReport& r, const ViewOptions& options) {
+    return printed({{"views", options.views},
+                    {"seed", options.seed},
+                    {"size", options.size},
+                    {"triangles", r.triangles},
+                    {"covered", r.covered},
+                    {"holes", r.holes}});
+}
+
 std::string simplifyText(const std::vector<SimplifyRace>& levels) {
     std::string text = "Triangles at equal true error (99.9 % of sampled distances, in stated errors)\n";
     text += fmt::format("{:>5}{:>12}{:>10}{:>14}{:>10}{:>8}\n", "level", "triangles", "error",
