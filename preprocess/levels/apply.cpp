@@ -99,16 +99,9 @@ Result<void> LevelApplier::load(std::uint32_t begin, std::uint32_t end) {
     }));
     for (std::uint32_t i = begin; i < end; ++i) {
         RETURN_IF_ERROR(tools_.writer.appendMorph(stage_.pages[i].number, std::exchange(at(i).morph, {})));
-        for (const PageOwner& owner : stage_.pages[i].owners) {
-            LatticeBox box;
-            for (const Range& range :
-                 std::span(at(i).page->ranges).subspan(owner.firstRange, owner.rangeCount)) {
-                for (std::uint32_t k = range.firstIndex; k < range.firstIndex + range.indexCount; ++k) {
-                    const CellPoint& target = at(i).targets.positions[at(i).page->indices[k]];
-                    box.add(tools_.model.lattice.fromCell(target));
-                }
-            }
-            addBox(tools_.model.nodes[owner.node], owner.whole, box);
+        for (std::size_t k = 0; k < at(i).reach.size(); ++k) {
+            const PageOwner& owner = stage_.pages[i].owners[k];
+            addBox(tools_.model.nodes[owner.node], owner.whole, at(i).reach[k]);
         }
     }
     return {};
@@ -129,6 +122,13 @@ void LevelApplier::encodeMorph(std::uint32_t index) {
     PageRecord& record = tools_.writer.record(stage_.pages[index].number);
     const MorphSource source{lattice.fromCell(page.origin), positions, targets, page.ranges, page.indices};
     loaded.morph = iwalk::encodeMorph(source, record);
+    for (const PageOwner& owner : stage_.pages[index].owners) {
+        LatticeBox& box = loaded.reach.emplace_back();
+        for (const Range& range : std::span(page.ranges).subspan(owner.firstRange, owner.rangeCount)) {
+            for (std::uint32_t k = range.firstIndex; k < range.firstIndex + range.indexCount; ++k)
+                box.add(targets[page.indices[k]]);
+        }
+    }
 }
 
 Result<void> LevelApplier::makeEntries(std::span<const Job> jobs) {

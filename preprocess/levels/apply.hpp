@@ -40,6 +40,7 @@ class LevelApplier {
         std::shared_ptr<const SourcePage> page;
         PageTargets targets;
         std::vector<std::byte> morph;
+        std::vector<LatticeBox> reach;  // by owner: around the places that its vertices go to
     };
     // An entry to be made.
     struct Job {

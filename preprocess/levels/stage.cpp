@@ -7,17 +7,13 @@
 namespace iwalk {
 namespace {
 
-// Of a level's error, what collapses may use. Sampled distances are less as a rule, but a few go up to 1.34
-// times what collapses think they cost.
-constexpr float kErrorShare = 0.85f;
-
 class Maker {
   public:
     Maker(const LevelModel& model, unsigned level, std::span<const PageRecord> records)
         : model_(model), level_(level), records_(records), cells_(model.cells()) {
         stage_.level = level;
         const auto limit = [&](unsigned l) {
-            return kErrorShare * static_cast<float>(levelErrorSteps(model.lattice.rootCellLog2, l));
+            return static_cast<float>(levelErrorSteps(model.lattice.rootCellLog2, l));
         };
         stage_.errorUnit = limit(level + 1);
         stage_.limits.error = limit(level);

@@ -1,5 +1,7 @@
 #include "preprocess/levels/targets.hpp"
 
+#include <oneapi/tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -28,7 +30,8 @@ std::vector<std::uint32_t> dealBins(const Stage& stage) {
 }
 
 bool comesBefore(const VertexTarget& a, const VertexTarget& b) {
-    return std::pair(a.stagePage, a.vertex) < std::pair(b.stagePage, b.vertex);
+    const auto key = [](const VertexTarget& t) { return std::uint64_t{t.stagePage} << 32 | t.vertex; };
+    return key(a) < key(b);
 }
 
 }  // namespace
@@ -66,7 +69,7 @@ Result<void> TargetBins::load(std::size_t bin) {
         targets_.resize(before + words.size() / kWords);
         std::memcpy(static_cast<void*>(targets_.data() + before), words.data(), words.size() * 4);
     }
-    std::sort(targets_.begin(), targets_.end(), comesBefore);
+    tbb::parallel_sort(targets_.begin(), targets_.end(), comesBefore);
     return {};
 }
 
