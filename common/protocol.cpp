@@ -204,11 +204,13 @@ void tileStatsFields(Io& io, M& m) {
     io.integer(m.tile, std::uint32_t{0}, kMaxTiles - 1);
     io.real(m.visibilityMs), io.real(m.adaptMs), io.real(m.fetchWaitMs), io.real(m.drawMs),
         io.real(m.barrierWaitMs);
-    io.integer(m.triangles), io.integer(m.ranges), io.real(m.screenErrorPx);
+    io.real(m.guessMs), io.real(m.pyramidMs), io.real(m.testMs);
+    io.integer(m.triangles), io.integer(m.ranges), io.integer(m.guessTriangles);
+    io.integer(m.hiddenPages), io.integer(m.hiddenRanges), io.real(m.screenErrorPx);
     io.integer(m.fetchedBytes), io.integer(m.prefetchedBytes), io.integer(m.stalls), io.integer(m.badPages);
     io.integer(m.peakRssBytes);
 }
-constexpr std::size_t kTileStatsBytes = 4 + 13 * 8;
+constexpr std::size_t kTileStatsBytes = 4 + 19 * 8;
 
 // Constness of the message is what tells writing from reading here.
 template <class T, class M>

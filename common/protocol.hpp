@@ -17,7 +17,7 @@
 // its limit before it allocates anything.
 namespace iwalk::protocol {
 
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::size_t kHeaderBytes = 8;
 inline constexpr std::uint32_t kMaxClientPayload = 1024;        // client to server
 inline constexpr std::uint32_t kMaxServerPayload = 512u << 20;  // server to client (an image of a large tile)
@@ -78,7 +78,12 @@ struct Control {
 struct TileStats {
     std::uint32_t tile = 0;
     double visibilityMs = 0, adaptMs = 0, fetchWaitMs = 0, drawMs = 0, barrierWaitMs = 0;
-    std::uint64_t triangles = 0, ranges = 0;
+    double guessMs = 0;                       // part of drawMs: what is drawn first
+    double pyramidMs = 0, testMs = 0;         // parts of visibilityMs: looking at the depth, testing boxes
+    std::uint64_t triangles = 0, ranges = 0;  // drawn
+    std::uint64_t guessTriangles = 0;         // of these, drawn first
+    std::uint64_t hiddenPages = 0,
+                  hiddenRanges = 0;  // in the frustum, tested, and hidden; ranges of other pages
     double screenErrorPx = 0;
     std::uint64_t fetchedBytes = 0, prefetchedBytes = 0, stalls = 0;
     std::uint64_t badPages = 0;  // pages left out of this frame because they could not be read

@@ -106,6 +106,26 @@ std::string levelText(std::uint8_t level) {
     return level == kFullLevel ? "full" : fmt::format("{}", level);
 }
 
+Result<void> parseMode(Settings& settings, const std::string& text) {
+    if (text == "frustum") return settings.mode = Mode::frustum, Result<void>();
+    if (text == "cplp") return settings.mode = Mode::cplp, Result<void>();
+    return fail("choose frustum or cplp");
+}
+
+std::string modeText(Mode mode) {
+    return mode == Mode::frustum ? "frustum" : "cplp";
+}
+
+Result<void> parseOcclusion(Settings& settings, const std::string& text) {
+    if (text == "hzb") return settings.occlusion = OcclusionTest::hzb, Result<void>();
+    if (text == "queries") return settings.occlusion = OcclusionTest::queries, Result<void>();
+    return fail("choose hzb or queries");
+}
+
+std::string occlusionText(OcclusionTest occlusion) {
+    return occlusion == OcclusionTest::hzb ? "hzb" : "queries";
+}
+
 // Everything there is to know about a setting; a new one is one more row here.
 struct Row {
     SettingInfo info;
@@ -113,7 +133,7 @@ struct Row {
     std::string (*print)(const Settings&);
 };
 
-constexpr std::size_t kRows = 7;
+constexpr std::size_t kRows = 9;
 const std::array<Row, kRows>& rows() {
     static const std::array<Row, kRows> table{{
         {{"cache", "BYTES",
@@ -152,6 +172,18 @@ const std::array<Row, kRows>& rows() {
           "triangles"},
          parseLevel,
          [](const Settings& s) { return levelText(s.level); }},
+        {{"mode", "frustum|cplp",
+          "what is drawn: frustum, everything in view; cplp (default), without what is hidden, to the same "
+          "picture; "
+          "cplp draws a fraction where much is hidden and tests for nothing where all is seen"},
+         parseMode,
+         [](const Settings& s) { return modeText(s.mode); }},
+        {{"occlusion", "hzb|queries",
+          "how cplp finds what is hidden, default hzb: a pyramid of the depth, on the processor; queries: "
+          "the GL's "
+          "occlusion queries"},
+         parseOcclusion,
+         [](const Settings& s) { return occlusionText(s.occlusion); }},
     }};
     return table;
 }

@@ -13,6 +13,8 @@ namespace iwalk {
 
 enum class Shading : std::uint8_t { automatic, flat, smooth };
 enum class Ramp : std::uint8_t { automatic, none, height };
+enum class Mode : std::uint8_t { frustum, cplp };
+enum class OcclusionTest : std::uint8_t { hzb, queries };
 
 // Every run-time setting of a server, the same on every tile. The command line, the [settings] table of a
 // wall file and the report name them alike, through the table below.
@@ -24,6 +26,8 @@ struct Settings {
     std::uint32_t background = 0x20242a;  // 0xRRGGBB, sRGB
     double near = 0;                      // model units; 0: chosen from the model's size
     std::uint8_t level = kFullLevel;      // that all of the model is drawn at
+    Mode mode = Mode::cplp;
+    OcclusionTest occlusion = OcclusionTest::hzb;  // of Mode::cplp
 };
 
 // One row of the table: how people write a setting.

@@ -50,6 +50,20 @@ void PageCache::beginFrame(std::vector<std::uint32_t> pages) {
     work_.notify_all();
 }
 
+void PageCache::continueFrame(std::span<const std::uint32_t> pages) {
+    const std::lock_guard lock(mutex_);
+    CHECK_OP(drawCursor_, ==, wanted_.size());
+    for (const std::uint32_t page : pages) {
+        Entry& entry = entries_[page];
+        const bool evictable = evictable_.erase(entry.key) > 0;
+        entry.frame = frame_;
+        entry.position = static_cast<std::uint32_t>(wanted_.size());
+        wanted_.push_back(page);
+        if (evictable) makeEvictable(page);
+    }
+    work_.notify_all();
+}
+
 PageCache::Next PageCache::next() {
     std::unique_lock lock(mutex_);
     if (drawCursor_ == wanted_.size()) return {};

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <set>
+#include <span>
 #include <thread>
 #include <tuple>
 #include <vector>
@@ -51,6 +52,9 @@ class PageCache {
     // Begins a frame that will take `pages` (each once) with next(), in this order. All handed out before
     // must have been released.
     void beginFrame(std::vector<std::uint32_t> pages);
+    // The frame will take `pages` behind those it was begun with, each once in this call. They may be pages
+    // that it has taken before.
+    void continueFrame(std::span<const std::uint32_t> pages);
 
     enum class Answer {
         page,     // `page` is the next one

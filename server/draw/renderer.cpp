@@ -14,6 +14,7 @@
 #include <glm/vec2.hpp>
 
 #include "server/draw/shaders.hpp"
+#include "server/draw/visibility_buffer.hpp"
 
 namespace iwalk {
 namespace {
@@ -21,7 +22,8 @@ namespace {
 // One GL buffer at the most; offsets into it must fit in 31 bits.
 constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
-constexpr int kMaxWindow = 16384;         // px: GL 4.5's least largest viewport
+constexpr std::uint32_t kNoBank = 0xffffffff;  // of pages that are not there any more
+constexpr int kMaxWindow = 16384;              // px: GL 4.5's least largest viewport
 
 // The square of the screen that clip space spans while a block is drawn. Its edge is a power of two, so that
 // transforms are exact. Screens wider than the largest viewport have a window for each strip of half that
@@ -51,8 +53,14 @@ class GlRenderer : public Renderer {
     Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override;
     void beginFrame(const TileView& view) override;
     void beginBlock(const Block& block) override;
-    void draw(const ResidentPage& page, const PageRecord& record, std::span<const IndexRun> runs) override;
+    std::uint32_t draw(const ResidentPage& page, const PageRecord& record, std::uint32_t rank,
+                       std::span<const DrawnRange> ranges) override;
+    void beginRest() override;
     void finish() override;
+    void wait() override;
+    glm::ivec2 readBlockDepths(std::vector<float>& depths) override;
+    glm::ivec2 readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
+    glm::ivec2 bindBlock() override;
     ColorImage readColor() override;
     DepthImage readDepth() override;
 
@@ -60,7 +68,11 @@ class GlRenderer : public Renderer {
     Result<void> makeFramebuffers();
     void addDepthTarget();
     std::uint32_t addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
-                          const glm::dvec3& origin);
+                          const glm::dvec3& origin, std::uint32_t rank);
+    glm::ivec2 blockSize() const {
+        return {block_.part.x + block_.part.width - block_.x, block_.part.y + block_.part.height - block_.y};
+    }
+    void startNumbersAgain();
     void useVisibilityProgram(bool wide);
     void shade();
     std::uint32_t shadingVariant() const;
@@ -69,7 +81,7 @@ class GlRenderer : public Renderer {
     const int width_, height_;  // px
     const PixelRect tile_;
     const SceneLook look_;
-    GLuint visibleFramebuffer_ = 0, visible_ = 0, depthBuffer_ = 0;
+    VisibilityBuffer visible_;
     GLuint framebuffer_ = 0, color_ = 0;
     GLuint captureFramebuffer_ = 0, eyeDepth_ = 0;  // with the same colour; made when depth is first wanted
     GLuint shaded_ = 0;                             // one of the two
@@ -78,7 +90,8 @@ class GlRenderer : public Renderer {
     std::array<GLuint, kShadeVariants> shadingPrograms_{};
     std::vector<GLuint> banks_;
     GLuint pagesBuffer_ = 0;
-    std::vector<ShadedPage> slots_;  // pages drawn since the last shading
+    std::vector<ShadedPage> slots_;  // by slot: what was drawn in this block
+    std::size_t unshaded_ = 0;       // slots from here on have not been shaded
     TileView view_;
     Block block_;
     GLuint used_ = 0;  // the visibility program that has this block's uniforms and is in use
@@ -105,8 +118,8 @@ GlRenderer::~GlRenderer() {
     for (const GLuint program : shadingPrograms_) glDeleteProgram(program);
     for (const GLuint array : {vertexArrays_[0], vertexArrays_[1], emptyArray_})
         glDeleteVertexArrays(1, &array);
-    for (const GLuint texture : {visible_, depthBuffer_, color_, eyeDepth_}) glDeleteTextures(1, &texture);
-    for (const GLuint framebuffer : {visibleFramebuffer_, framebuffer_, captureFramebuffer_})
+    for (const GLuint texture : {color_, eyeDepth_}) glDeleteTextures(1, &texture);
+    for (const GLuint framebuffer : {framebuffer_, captureFramebuffer_})
         glDeleteFramebuffers(1, &framebuffer);
     glDeleteBuffers(1, &pagesBuffer_);
     glDeleteBuffers(static_cast<GLsizei>(banks_.size()), banks_.data());
@@ -139,20 +152,12 @@ Result<void> GlRenderer::makeFramebuffers() {
         blockWidth = std::max(blockWidth, block.part.x + block.part.width - block.x);
         blockHeight = std::max(blockHeight, block.part.y + block.part.height - block.y);
     }
-    visible_ = makeTexture(GL_R32UI, blockWidth, blockHeight);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-        glTextureParameteri(visible_, filter,
-                            GL_NEAREST);  // integers cannot be filtered: without this nothing is read
-    depthBuffer_ = makeTexture(GL_DEPTH_COMPONENT32F, blockWidth, blockHeight);
+    RETURN_IF_ERROR(visible_.prepare(blockWidth, blockHeight));
     color_ = makeTexture(GL_RGBA8, width_, height_);
-    glCreateFramebuffers(1, &visibleFramebuffer_);
-    glNamedFramebufferTexture(visibleFramebuffer_, GL_COLOR_ATTACHMENT0, visible_, 0);
-    glNamedFramebufferTexture(visibleFramebuffer_, GL_DEPTH_ATTACHMENT, depthBuffer_, 0);
     glCreateFramebuffers(1, &framebuffer_);
     glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, color_, 0);
-    for (const GLuint framebuffer : {visibleFramebuffer_, framebuffer_})
-        if (glCheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-            return fail("this GL cannot draw {}x{} px with 32-bit float depth", width_, height_);
+    if (glCheckNamedFramebufferStatus(framebuffer_, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        return fail("this GL cannot draw {}x{} px", width_, height_);
     return {};
 }
 
@@ -199,10 +204,8 @@ void GlRenderer::beginBlock(const Block& block) {
     block_ = block;
     used_ = 0;
     slots_.clear();
-    const float infinitelyFar[] = {0};
-    const GLuint nobody[] = {0, 0, 0, 0};
-    glClearNamedFramebufferuiv(visibleFramebuffer_, GL_COLOR, 0, nobody);
-    glClearNamedFramebufferfv(visibleFramebuffer_, GL_DEPTH, 0, infinitelyFar);
+    unshaded_ = 0;
+    visible_.clear();
 }
 
 // Frames whose depth is wanted have a framebuffer of their own.
@@ -218,7 +221,7 @@ void GlRenderer::addDepthTarget() {
 void GlRenderer::useVisibilityProgram(bool wide) {
     if (used_ == visibilityPrograms_[wide]) return;
     used_ = visibilityPrograms_[wide];
-    glBindFramebuffer(GL_FRAMEBUFFER, visibleFramebuffer_);
+    visible_.bind();
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_SCISSOR_TEST);
     glBindVertexArray(vertexArrays_[wide]);
@@ -232,12 +235,13 @@ void GlRenderer::useVisibilityProgram(bool wide) {
     glUniform3f(kWindow, static_cast<float>(window.x) + half, static_cast<float>(window.y) + half, half);
 }
 
-void GlRenderer::draw(const ResidentPage& page, const PageRecord& record, std::span<const IndexRun> runs) {
-    if (slots_.size() == kMaxSlots) shade();
+std::uint32_t GlRenderer::draw(const ResidentPage& page, const PageRecord& record, std::uint32_t rank,
+                               std::span<const DrawnRange> ranges) {
+    if (slots_.size() == kMaxSlots) startNumbersAgain();
     const bool wide = record.flags & kPageWide;
     const PageLayout layout = pageLayout(record);
     const glm::dvec3 origin = view_.eye.to(page.table->origin);
-    const std::uint32_t slot = addSlot(page, record, layout, origin);
+    const std::uint32_t slot = addSlot(page, record, layout, origin, rank);
 
     useVisibilityProgram(wide);
     const GLuint buffer = banks_[page.place.bank];
@@ -246,16 +250,54 @@ void GlRenderer::draw(const ResidentPage& page, const PageRecord& record, std::s
                               static_cast<GLsizei>(layout.positionStride));
     glVertexArrayElementBuffer(vertexArrays_[wide], buffer);
     glUniform3d(kPageOrigin, origin.x, origin.y, origin.z);
-    for (const IndexRun& run : runs) {
-        glUniform1ui(kFirstId, (slot + 1) << 16 | run.firstIndex / 3);
-        const std::uintptr_t at = static_cast<std::uintptr_t>(offset) + layout.indices + 2 * run.firstIndex;
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(run.indexCount), GL_UNSIGNED_SHORT,
+    for (const DrawnRange& range : ranges) {
+        glUniform1ui(kFirstId, (slot + 1) << 16 | range.firstIndex / 3);
+        glUniform1f(kNearest, std::min(range.box.depth, 1.0f));
+        const std::uintptr_t at = static_cast<std::uintptr_t>(offset) + layout.indices + 2 * range.firstIndex;
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.indexCount), GL_UNSIGNED_SHORT,
                        reinterpret_cast<const void*>(at));
     }
+    return slot;
+}
+
+// More pages than numbers: what was drawn so far keeps its depth and loses its place in the order.
+void GlRenderer::startNumbersAgain() {
+    shade();
+    visible_.forgetNumbers();
+    slots_.clear();
+    unshaded_ = 0;
+}
+
+void GlRenderer::beginRest() {
+    bindBlock();
+    visible_.beginRest();
+}
+
+glm::ivec2 GlRenderer::bindBlock() {
+    visible_.bind();
+    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_DEPTH_TEST);
+    glViewport(0, 0, blockSize().x, blockSize().y);
+    used_ = 0;
+    return blockSize();
+}
+
+void GlRenderer::wait() {
+    glFinish();
+}
+
+glm::ivec2 GlRenderer::readBlockDepths(std::vector<float>& depths) {
+    visible_.readDepths(blockSize().x, blockSize().y, depths);
+    return blockSize();
+}
+
+glm::ivec2 GlRenderer::readBlockTriangles(std::vector<std::uint32_t>& numbers) {
+    visible_.readNumbers(blockSize().x, blockSize().y, numbers);
+    return blockSize();
 }
 
 std::uint32_t GlRenderer::addSlot(const ResidentPage& page, const PageRecord& record,
-                                  const PageLayout& layout, const glm::dvec3& origin) {
+                                  const PageLayout& layout, const glm::dvec3& origin, std::uint32_t rank) {
     const auto word = [&](std::uint32_t stream) {
         return static_cast<std::uint32_t>((page.place.offset + stream) / 4);
     };
@@ -264,7 +306,8 @@ std::uint32_t GlRenderer::addSlot(const ResidentPage& page, const PageRecord& re
          {word(layout.positions), word(layout.colors), word(layout.normals), word(layout.indices)},
          page.place.bank,
          record.flags & kPageWide ? 1u : 0u,
-         {}});
+         rank,
+         0});
     return static_cast<std::uint32_t>(slots_.size() - 1);
 }
 
@@ -276,19 +319,23 @@ void GlRenderer::finish() {
 // Every pixel whose nearest surface was drawn since the last time gets its colour, while the pages are still
 // there. A pixel that a later batch covers is shaded again then.
 void GlRenderer::shade() {
-    if (slots_.empty()) return;
+    if (unshaded_ == slots_.size()) return;
     glNamedBufferSubData(pagesBuffer_, 0, static_cast<GLsizeiptr>(slots_.size() * sizeof(ShadedPage)),
                          slots_.data());
     glBindFramebuffer(GL_FRAMEBUFFER, shaded_);
     glViewport(0, 0, width_, height_);
     glDisable(GL_DEPTH_TEST);
+    glEnable(GL_SCISSOR_TEST);
     glScissor(block_.part.x - tile_.x, block_.part.y - tile_.y, block_.part.width, block_.part.height);
     glBindVertexArray(emptyArray_);
-    glBindTextureUnit(0, visible_);
+    visible_.bindForShading();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kPagesBinding, pagesBuffer_);
     useShadingProgram();
     std::vector<bool> used(banks_.size());
-    for (const ShadedPage& page : slots_) used[page.bank] = true;
+    for (; unshaded_ < slots_.size(); ++unshaded_) {
+        used[slots_[unshaded_].bank] = true;
+        slots_[unshaded_].bank = kNoBank;  // next time
+    }
     for (std::uint32_t bank = 0; bank < banks_.size(); ++bank) {
         if (!used[bank]) continue;
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kWordsBinding, banks_[bank]);
@@ -296,15 +343,13 @@ void GlRenderer::shade() {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
     glDisable(GL_SCISSOR_TEST);
-    const GLuint nobody[] = {0, 0, 0, 0};
-    glClearNamedFramebufferuiv(visibleFramebuffer_, GL_COLOR, 0, nobody);
-    slots_.clear();
     used_ = 0;
 }
 
 std::uint32_t GlRenderer::shadingVariant() const {
     std::uint32_t variant = 0;
     if (view_.captureDepth) variant |= kShadeDepth;
+    if (visible_.hasRest()) variant |= kShadeRest;
     if (look_.normals && look_.shading != Shading::flat) variant |= kShadeSmooth;
     if (look_.ramp == Ramp::height || (look_.ramp == Ramp::automatic && !look_.colors))
         return variant | kShadeRamp;

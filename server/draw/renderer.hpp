@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <span>
 #include <vector>
@@ -63,10 +64,26 @@ class Renderer {
     // What draw() is given from here to finish() shows in this block of the tile only. All blocks make a
     // frame.
     virtual void beginBlock(const Block& block) = 0;
-    virtual void draw(const ResidentPage& page, const PageRecord& record, std::span<const IndexRun> runs) = 0;
+    // `rank`: of the page in the block's order, from near to far: what is equally near is seen where it comes
+    // first. Pages must come in this order, up to beginRest() and again from there on. The result is the
+    // draw's number in the block.
+    virtual std::uint32_t draw(const ResidentPage& page, const PageRecord& record, std::uint32_t rank,
+                               std::span<const DrawnRange> ranges) = 0;
+    // What is drawn from here on may come before what has been drawn. Once in a block.
+    virtual void beginRest() = 0;
     // Shades what was drawn since the last time; returns when the pixels are there and no page is read any
     // more.
     virtual void finish() = 0;
+
+    // Returns when all that was drawn is there; pages are still needed.
+    virtual void wait() = 0;
+    // The block's pixels as drawn so far, row by row from its framebuffer's corner to the end of its part:
+    // window depths, and triangles as (number of the draw + 1) << 16 | triangle in the page, or 0. The
+    // results are their width and height.
+    virtual glm::ivec2 readBlockDepths(std::vector<float>& depths) = 0;
+    virtual glm::ivec2 readBlockTriangles(std::vector<std::uint32_t>& numbers) = 0;
+    // Makes the block's framebuffer GL's, for others to test boxes against its depth; the result is its size.
+    virtual glm::ivec2 bindBlock() = 0;
 
     virtual ColorImage readColor() = 0;
     // Eye-space depth in model units, 0 where there is no surface; of a frame with captureDepth.

@@ -45,13 +45,38 @@ void main() {
 }
 )";
 
+// Rasterisers interpolate depth with errors that have no bound for triangles thinner than a pixel: what is
+// drawn could be nearer than the range's box. So it is cut off there, and what a box hides is truly hidden.
 const char* const kVisibilityFragment = R"(
 layout(location = 4) uniform uint firstId;
+layout(location = 11) uniform float nearest;
 layout(location = 0) out uint id;
 void main() {
     id = firstId + uint(gl_PrimitiveID);
+    gl_FragDepth = min(gl_FragCoord.z, nearest);
 }
 )";
+
+// The next float away from the eye; infinitely far stays.
+const char* const kRestFragment = R"(
+layout(binding = 0) uniform sampler2D depths;
+layout(location = 0) out uint id;
+void main() {
+    id = 0u;
+    uint bits = floatBitsToUint(texelFetch(depths, ivec2(gl_FragCoord.xy), 0).r);
+    gl_FragDepth = uintBitsToFloat(max(bits, 1u) - 1u);
+}
+)";
+
+// A rectangle of a block at one depth, for an occlusion query.
+const char* const kBox = R"(
+layout(location = 11) uniform float nearest;
+layout(location = 12) uniform vec4 corners;
+void main() {
+    gl_Position = vec4((gl_VertexID & 1) == 0 ? corners.x : corners.z, gl_VertexID < 2 ? corners.y : corners.w, nearest, 1.0);
+}
+)";
+const char* const kNoFragment = "void main() {}\n";
 
 const char* const kWholeTile = R"(
 void main() {
@@ -71,12 +96,18 @@ layout(location = 8) uniform float stepSize;
 layout(location = 9) uniform vec2 ramp;
 layout(location = 10) uniform ivec2 inBlock;
 layout(binding = 0) uniform usampler2D visible;
+#if REST
+layout(binding = 1) uniform sampler2D depths;
+layout(binding = 2) uniform usampler2D visibleRest;
+layout(binding = 3) uniform sampler2D depthsRest;
+#endif
 
 struct Page {
     dvec3 origin;
     uvec4 streams;
     uint bank;
     uint wide;
+    uint rank;
 };
 layout(std430, binding = 0) readonly buffer Words { uint words[]; };
 layout(std430, binding = 1) readonly buffer Pages { Page pages[]; };
@@ -123,8 +154,23 @@ vec3 rampColor(float height) {
     return mix(stops[i], stops[i + 1], at - float(i));
 }
 
+// The nearest triangle; of equally near ones the first in the order of pages, then in the page.
+uint nearestTriangle(ivec2 pixel) {
+    uint first = texelFetch(visible, pixel, 0).r;
+#if REST
+    uint rest = texelFetch(visibleRest, pixel, 0).r;
+    if (rest == 0u) return first;
+    bool tie = first != 0u && texelFetch(depths, pixel, 0).r == texelFetch(depthsRest, pixel, 0).r;
+    if (!tie) return rest;
+    uint rankFirst = pages[(first >> 16) - 1u].rank, rankRest = pages[(rest >> 16) - 1u].rank;
+    bool restIsFirst = rankRest < rankFirst || (rankRest == rankFirst && (rest & 0xffffu) < (first & 0xffffu));
+    if (restIsFirst) return rest;
+#endif
+    return first;
+}
+
 void main() {
-    uint id = texelFetch(visible, ivec2(gl_FragCoord.xy) + inBlock, 0).r;
+    uint id = nearestTriangle(ivec2(gl_FragCoord.xy) + inBlock);
     if (id == 0u) discard;
     uint slot = (id >> 16) - 1u;
     if (pages[slot].bank != bank) discard;
@@ -226,9 +272,18 @@ Result<std::uint32_t> compileVisibilityProgram(bool wide) {
     return compile(define("WIDE", wide), kVertex, kVisibilityFragment);
 }
 
+Result<std::uint32_t> compileRestProgram() {
+    return compile("", kWholeTile, kRestFragment);
+}
+
+Result<std::uint32_t> compileBoxProgram() {
+    return compile("", kBox, kNoFragment);
+}
+
 Result<std::uint32_t> compileShadingProgram(std::uint32_t variant) {
     return compile(define("COLORS", variant & kShadeColors) + define("SMOOTH", variant & kShadeSmooth) +
-                       define("DEPTH", variant & kShadeDepth) + define("RAMP", variant & kShadeRamp),
+                       define("DEPTH", variant & kShadeDepth) + define("RAMP", variant & kShadeRamp) +
+                       define("REST", variant & kShadeRest),
                    kWholeTile, kShadingFragment);
 }
 

@@ -15,7 +15,8 @@ enum ShadingVariant : std::uint32_t {
     kShadeSmooth = 2,  // pages have normals, and they are used
     kShadeDepth = 4,   // writes eye-space depth to a second target
     kShadeRamp = 8,    // coloured by height
-    kShadeVariants = 16,
+    kShadeRest = 16,   // the visibility buffer has a second layer
+    kShadeVariants = 32,
 };
 
 // Where the uniforms are; the same in all programs that have them.
@@ -31,6 +32,8 @@ enum UniformLocation : std::int32_t {
     kStepSize = 8,     // float, model units
     kRamp = 9,         // vec2: height (from the eye, steps) where the ramp begins, and 1 / its length
     kInBlock = 10,     // ivec2: the tile's origin less the block's, px
+    kNearest = 11,     // float: no depth of the draw is nearer
+    kBoxCorners = 12,  // vec4: of a rectangle, in clip space
 };
 
 // What the second pass knows of a page, by slot; std430.
@@ -39,7 +42,8 @@ struct ShadedPage {
     std::uint32_t streams[4];  // where positions, colours, normals, indices begin: 32-bit words into the bank
     std::uint32_t bank;
     std::uint32_t wide;  // 1: positions as 3 x 32 bits
-    std::uint32_t unused[2];
+    std::uint32_t rank;  // pages of equal depth: the lower one is seen
+    std::uint32_t unused;
 };
 static_assert(sizeof(ShadedPage) == 64);
 
@@ -47,6 +51,8 @@ enum StorageBinding : std::uint32_t { kWordsBinding = 0, kPagesBinding = 1 };
 
 // Compile and link; the error holds the GL's log. The first pass comes for narrow and for wide pages.
 Result<std::uint32_t> compileVisibilityProgram(bool wide);
+Result<std::uint32_t> compileRestProgram();  // begins the visibility buffer's second layer
+Result<std::uint32_t> compileBoxProgram();   // a rectangle at one depth, no colour
 Result<std::uint32_t> compileShadingProgram(std::uint32_t variant);
 
 }  // namespace iwalk

@@ -2,29 +2,15 @@
 
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "common/dataset/page_files.hpp"
+#include "server/frame/stopwatch.hpp"
 
 namespace iwalk {
 namespace {
-
-class Stopwatch {
-  public:
-    // Milliseconds since the last call, or since the beginning.
-    double lap() {
-        const auto now = std::chrono::steady_clock::now();
-        const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-        last_ = now;
-        return ms;
-    }
-
-  private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 std::uint64_t peakRssBytes() {
     rusage usage{};
@@ -35,13 +21,6 @@ std::uint64_t peakRssBytes() {
 Camera cameraOf(const FrameState& state) {
     const auto vector = [](const double(&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
     return {vector(state.eye), vector(state.target), vector(state.up), state.fovY};
-}
-
-std::vector<std::uint32_t> pagesOf(const std::vector<VisibleRanges>& visible) {
-    std::vector<std::uint32_t> pages;
-    for (const VisibleRanges& ranges : visible)
-        if (pages.empty() || pages.back() != ranges.page) pages.push_back(ranges.page);
-    return pages;
 }
 
 // The arena never needs more than the dataset's pages, decoded, and never less than the largest of them.
@@ -93,6 +72,13 @@ Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& datase
     pipeline->cache_ = std::make_unique<PageCache>(dataset.hierarchy, std::move(files),
                                                    Arena(std::move(memory), Renderer::kArenaAlignment),
                                                    settings.fetchThreads);
+    pipeline->pages_.emplace(dataset.hierarchy, *pipeline->cache_, *pipeline->renderer_);
+    if (settings.mode == Mode::cplp) {
+        ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion,
+                         makeOcclusion(settings.occlusion, *pipeline->renderer_));
+        pipeline->conservative_.emplace(pipeline->visibility_, *pipeline->cache_, *pipeline->renderer_,
+                                        *pipeline->pages_, std::move(occlusion));
+    }
     return pipeline;
 }
 
@@ -118,24 +104,28 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
 
     const TileView view = viewOf(state);
     renderer_->beginFrame(view);
-    for (const Block& block : blocksOf(view.tile)) drawBlock(view, block, stats);
+    for (const Block& block : blocksOf(view.tile)) drawBlock(BlockView(view, block), stats);
+    if (conservative_) conservative_->endFrame();
 
+    stats.visibilityMs += stats.pyramidMs + stats.testMs;
     stats.drawMs = watch.lap() - stats.visibilityMs - stats.fetchWaitMs;
     stats.peakRssBytes = peakRssBytes();
     return stats;
 }
 
-void TilePipeline::drawBlock(const TileView& view, const Block& block, protocol::TileStats& stats) {
+void TilePipeline::drawBlock(const BlockView& view, protocol::TileStats& stats) {
     Stopwatch watch;
-    // The snapping of vertices moves the picture by less than a pixel.
-    const Frustum frustum = frustumOf(view.projection, block.part, 1, view.near);
-    const std::vector<VisibleRanges> visible = visibility_.visible(cut_, frustum, view.eye);
+    const std::vector<VisibleRanges> visible = visibility_.visible(cut_, view.frustum, view.eye);
     stats.visibilityMs += watch.lap();
 
-    cache_->beginFrame(pagesOf(visible));
-    renderer_->beginBlock(block);
-    drawPages(visible, frustum, view.eye, stats);
-    renderer_->finish();
+    if (conservative_) {
+        conservative_->drawBlock(view, visible, stats);
+    } else {
+        cache_->beginFrame(pagesOf(visible));
+        renderer_->beginBlock(view.block);
+        pages_->drawAll(view, visible, stats);
+        renderer_->finish();
+    }
     cache_->release();
 
     const PageCache::Counters counters = cache_->counters();
@@ -143,30 +133,6 @@ void TilePipeline::drawBlock(const TileView& view, const Block& block, protocol:
     stats.fetchedBytes += counters.fetchedBytes;
     stats.stalls += counters.stalls;
     stats.badPages += counters.badPages;
-}
-
-void TilePipeline::drawPages(const std::vector<VisibleRanges>& visible, const Frustum& frustum,
-                             const LatticeEye& eye, protocol::TileStats& stats) {
-    std::vector<IndexRun> runs;
-    for (auto ranges = visible.begin(); ranges != visible.end();) {
-        PageCache::Next next = cache_->next();
-        while (next.answer == PageCache::Answer::full) {
-            renderer_->finish();
-            cache_->release();
-            next = cache_->next();
-        }
-        const std::uint32_t page = ranges->page;
-        runs.clear();
-        for (; ranges != visible.end() && ranges->page == page; ++ranges) {
-            if (next.answer == PageCache::Answer::skipped) continue;
-            CHECK_OP(next.page.page, ==, page);
-            stats.ranges +=
-                cullRanges(*next.page.table, ranges->firstRange, ranges->rangeCount, frustum, eye, runs);
-        }
-        if (runs.empty()) continue;
-        renderer_->draw(next.page, dataset_.hierarchy.pages[page], runs);
-        for (const IndexRun& run : runs) stats.triangles += run.indexCount / 3;
-    }
 }
 
 double nearPlane(const Settings& settings, const Manifest& manifest) {

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/protocol.hpp"
 #include "common/settings.hpp"
 #include "server/cache/page_cache.hpp"
 #include "server/draw/renderer.hpp"
+#include "server/frame/conservative.hpp"
 #include "server/frame/frame_state.hpp"
 #include "server/wall/wall.hpp"
 
@@ -42,9 +44,7 @@ class TilePipeline {
           visibility_(dataset.hierarchy) {}
 
     TileView viewOf(const FrameState& state) const;
-    void drawBlock(const TileView& view, const Block& block, protocol::TileStats& stats);
-    void drawPages(const std::vector<VisibleRanges>& visible, const Frustum& frustum, const LatticeEye& eye,
-                   protocol::TileStats& stats);
+    void drawBlock(const BlockView& view, protocol::TileStats& stats);
 
     const Dataset& dataset_;
     const Wall& wall_;
@@ -53,6 +53,8 @@ class TilePipeline {
     const FrustumVisibility visibility_;
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<PageCache> cache_;  // after the renderer, whose memory it uses
+    std::optional<PageDrawing> pages_;
+    std::optional<ConservativeDrawing> conservative_;  // with --mode cplp
 };
 
 // What near plane rank 0 puts into the frame state: the setting, or a hundred thousandth of the model's

@@ -31,11 +31,11 @@ double squaredDistance(const LatticeEye& eye, const LatticeBox& box) {
 
 void addEntry(const Hierarchy& hierarchy, const LevelRecord& entry, std::vector<VisibleRanges>& found) {
     if (entry.pageCount == 1) {
-        found.push_back({entry.firstPage, entry.firstRange, entry.rangeCount});
+        found.push_back({entry.firstPage, entry.firstRange, entry.rangeCount, 0});
         return;
     }
     for (std::uint32_t page = entry.firstPage; page < entry.firstPage + entry.pageCount; ++page)
-        found.push_back({page, 0, hierarchy.pages[page].rangeCount});
+        found.push_back({page, 0, hierarchy.pages[page].rangeCount, 0});
 }
 
 }  // namespace
@@ -77,25 +77,22 @@ std::vector<VisibleRanges> FrustumVisibility::visible(const Cut& cut, const Frus
                std::tuple(b.first, b.second.page, b.second.firstRange);
     });
     std::transform(order.begin(), order.end(), found.begin(), [](const auto& entry) { return entry.second; });
+    for (std::size_t i = 1; i < found.size(); ++i)
+        found[i].rank = found[i - 1].rank + (found[i].page != found[i - 1].page ? 1 : 0);
     return found;
 }
 
-std::uint32_t cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count,
-                         const Frustum& frustum, const LatticeEye& eye, std::vector<IndexRun>& runs) {
+void cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,
+                const BoxProjection& projection, const LatticeEye& eye, std::vector<DrawnRange>& ranges) {
     const glm::dvec3 origin = eye.to(table.origin);
-    std::uint32_t kept = 0;
     for (std::uint32_t r = first; r < first + count; ++r) {
         const Range& range = table.ranges[r];
-        const glm::dvec3 low(range.boxMin[0], range.boxMin[1], range.boxMin[2]);
-        const glm::dvec3 high(range.boxMax[0], range.boxMax[1], range.boxMax[2]);
-        if (!meets(frustum, origin + low, origin + high)) continue;
-        ++kept;
-        if (!runs.empty() && runs.back().firstIndex + runs.back().indexCount == range.firstIndex)
-            runs.back().indexCount += range.indexCount;
-        else
-            runs.push_back({range.firstIndex, range.indexCount});
+        const glm::dvec3 low = origin + glm::dvec3(range.boxMin[0], range.boxMin[1], range.boxMin[2]);
+        const glm::dvec3 high = origin + glm::dvec3(range.boxMax[0], range.boxMax[1], range.boxMax[2]);
+        if (!meets(frustum, low, high)) continue;
+        const ScreenBox box = projection.of(low, high);
+        if (!box.empty()) ranges.push_back({r, range.firstIndex, range.indexCount, box});
     }
-    return kept;
 }
 
 }  // namespace iwalk

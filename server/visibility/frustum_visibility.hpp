@@ -6,6 +6,7 @@
 #include "common/dataset/page.hpp"
 #include "server/adapt/cut.hpp"
 #include "server/visibility/eye.hpp"
+#include "server/visibility/screen_box.hpp"
 #include "server/wall/projection.hpp"
 
 namespace iwalk {
@@ -14,11 +15,14 @@ namespace iwalk {
 // one.
 struct VisibleRanges {
     std::uint32_t page = 0, firstRange = 0, rangeCount = 0;
+    std::uint32_t rank = 0;  // of the page in the order of all that the frustum has; decides equal depths
 };
 
-// A contiguous run of a page's indices.
-struct IndexRun {
+// A range that is drawn.
+struct DrawnRange {
+    std::uint32_t range = 0;  // of its page
     std::uint32_t firstIndex = 0, indexCount = 0;
+    ScreenBox box;  // nothing of it is drawn nearer than that
 };
 
 // Visibility by the frustum alone (`--mode frustum`): everything of the cut whose box meets it.
@@ -31,14 +35,22 @@ class FrustumVisibility {
     // draw equal depths in the same order. Frustum in lattice steps.
     std::vector<VisibleRanges> visible(const Cut& cut, const Frustum& frustum, const LatticeEye& eye) const;
 
+    // Around all that a page has, lattice.
+    const LatticeBox& pageBox(std::uint32_t page) const { return pageBoxes_[page]; }
+
+    // About: pages' triangles by the share of their ranges.
+    std::uint64_t trianglesOf(const VisibleRanges& ranges) const {
+        const PageRecord& page = hierarchy_.pages[ranges.page];
+        return std::uint64_t{page.indexCount} / 3 * ranges.rangeCount / page.rangeCount;
+    }
+
   private:
     const Hierarchy& hierarchy_;
     std::vector<LatticeBox> pageBoxes_;  // around all entries of a page
 };
 
-// The ranges among `table.ranges[first, first + count)` whose boxes meet the frustum, neighbours joined to
-// runs. Appends to `runs`; the result is the number of ranges kept.
-std::uint32_t cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count,
-                         const Frustum& frustum, const LatticeEye& eye, std::vector<IndexRun>& runs);
+// Appends the ranges among `table.ranges[first, first + count)` that may have a pixel in the frustum.
+void cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,
+                const BoxProjection& projection, const LatticeEye& eye, std::vector<DrawnRange>& ranges);
 
 }  // namespace iwalk

@@ -35,7 +35,7 @@ std::string refusal(const std::vector<std::byte>& bytes) {
 }
 
 TEST(Protocol, GoldenBytes) {
-    EXPECT_EQ(hex(encode(Hello{})), "05000000010000000100000001");
+    EXPECT_EQ(hex(encode(Hello{})), "05000000010000000200000001");
     EXPECT_EQ(hex(encode(Control{true})), "010000000400000001");
     EXPECT_EQ(hex(encode(Failure{"no"})), "040000000700000002006e6f");
 
@@ -114,7 +114,7 @@ TEST(Protocol, HeaderRefusals) {
 }
 
 TEST(Protocol, OtherVersionIsNamed) {
-    EXPECT_NE(refusal(encode(Hello{2, true})).find("version 2"), std::string::npos);
+    EXPECT_NE(refusal(encode(Hello{1, true})).find("version 1"), std::string::npos);
     Welcome welcome;
     welcome.version = 77;
     EXPECT_NE(refusal(encode(welcome)).find("version 77"), std::string::npos);

@@ -65,8 +65,13 @@ class PageCacheTest : public ::testing::Test {
 
     // Draws a frame; checks that pages come in order with their own bytes. Returns how often memory was full.
     int drawFrame(const std::vector<std::uint32_t>& pages) {
-        int full = 0;
         cache_->beginFrame(pages);
+        const int full = takeAll(pages);
+        cache_->release();
+        return full;
+    }
+    int takeAll(const std::vector<std::uint32_t>& pages) {
+        int full = 0;
         for (std::size_t i = 0;; ++i) {
             PageCache::Next next = cache_->next();
             for (; next.answer == PageCache::Answer::full; next = cache_->next()) {
@@ -84,7 +89,6 @@ class PageCacheTest : public ::testing::Test {
             for (std::uint32_t v = 0; v < 3; ++v)
                 EXPECT_EQ(pageOffset(bytes, hierarchy_.pages[pages[i]], v), glm::u32vec3(pages[i], v, v * v));
         }
-        cache_->release();
         return full;
     }
 
@@ -162,6 +166,38 @@ TEST_F(PageCacheTest, SlowDiskAndChangingFramesStayInOrder) {
     for (int frame = 0; frame < 30; ++frame) {
         std::shuffle(pages.begin(), pages.end(), random);
         drawFrame({pages.begin(), pages.begin() + 1 + random() % 30});
+    }
+}
+
+TEST_F(PageCacheTest, AFrameMayGoOn) {
+    make(kPages, 2);
+    cache_->beginFrame(range(0, 10));
+    EXPECT_EQ(takeAll(range(0, 10)), 0);
+    for (const std::uint32_t from : {5u, 0u, 12u}) {  // some are taken already, and not given back
+        cache_->continueFrame(range(from, from + 10));
+        EXPECT_EQ(takeAll(range(from, from + 10)), 0);
+    }
+    cache_->release();
+    EXPECT_EQ(file_->reads, 22);
+    EXPECT_EQ(cache_->counters().fetchedPages, 22u);
+    EXPECT_EQ(drawFrame(range(0, 22)), 0);
+    EXPECT_EQ(file_->reads, 22);
+}
+
+TEST_F(PageCacheTest, AFrameMayGoOnInLittleMemory) {
+    file_->delayUs = 50;
+    make(4, 3);
+    std::mt19937 random(4);
+    std::vector<std::uint32_t> pages = range(0, kPages);
+    for (int frame = 0; frame < 20; ++frame) {
+        cache_->beginFrame({});
+        for (int part = 0; part < 5; ++part) {
+            std::shuffle(pages.begin(), pages.end(), random);
+            const std::vector<std::uint32_t> some(pages.begin(), pages.begin() + 1 + random() % 12);
+            cache_->continueFrame(some);
+            takeAll(some);
+        }
+        cache_->release();
     }
 }
 

@@ -7,10 +7,8 @@
 #include <fstream>
 #include <random>
 
-#include "preprocess/build/build.hpp"
 #include "preprocess/import/importer.hpp"
-#include "server/draw/gl_context.hpp"
-#include "tests/common/temp_directory.hpp"
+#include "tests/server/render_fixture.hpp"
 #include "tests/server/wall_renders.hpp"
 #include "tests/tools/depth_agreement.hpp"
 #include "tests/tools/ray_caster.hpp"
@@ -20,52 +18,6 @@ namespace iwalk {
 namespace {
 
 using namespace tools;
-
-class Silent : public Progress {
-    void phase(const std::string&) override {}
-    void done(double) override {}
-};
-
-// A GL context for all tests of this program.
-class RenderTest : public ::testing::Test {
-  protected:
-    static void SetUpTestSuite() {
-        Result<std::unique_ptr<GlContext>> context = GlContext::createHeadless();
-        ASSERT_TRUE(context.ok()) << context.error().message;
-        context_ = std::move(context).value();
-    }
-    static void TearDownTestSuite() { context_.reset(); }
-
-    // Builds a dataset; leaves are small so that there are many pages.
-    Dataset build(const Triangles& triangles, const PlyOptions& options = {},
-                  std::uint32_t leafTriangles = 500) {
-        const std::string ply = directory_.path("model.ply"), path = directory_.path("dataset");
-        EXPECT_TRUE(writePly(ply, triangles, options).ok());
-        BuildOptions build;
-        build.inputs = {ply};
-        build.output = path;
-        build.leafTriangles = leafTriangles;
-        return open(build);
-    }
-    Dataset buildFile(const std::string& input) {
-        BuildOptions build;
-        build.inputs = {input};
-        build.output = directory_.path("dataset");
-        build.leafTriangles = 4000;
-        return open(build);
-    }
-    static Dataset open(const BuildOptions& build) {
-        Silent silent;
-        const Result<Manifest> built = buildDataset(build, silent);
-        EXPECT_TRUE(built.ok()) << built.error().message;
-        Result<Dataset> dataset = openDataset(build.output);
-        EXPECT_TRUE(dataset.ok()) << dataset.error().message;
-        return std::move(dataset).value();
-    }
-
-    const TempDirectory directory_;
-    static inline std::unique_ptr<GlContext> context_;
-};
 
 // Pixels whose depth is within 1e-4 of the ray caster's, as a share of all.
 double depthAgreementOf(const Dataset& dataset, const Triangles& triangles, const Camera& camera) {

@@ -44,20 +44,35 @@ Wall wallOf(int width, int height, int columns, int rows) {
     return wall;
 }
 
-Picture WallRenders::draw(const Wall& wall, const Camera& camera) {
-    Picture picture{ColorImage(wall.width, wall.height, 3), DepthImage(wall.width, wall.height, 1)};
-    stats_ = {};
+WallServers::WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings)
+    : wall_(wall), near_(nearPlane(settings, dataset.manifest)) {
     for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
-        Result<std::unique_ptr<TilePipeline>> pipeline = TilePipeline::create(dataset_, wall, i, settings_);
+        Result<std::unique_ptr<TilePipeline>> pipeline = TilePipeline::create(dataset, wall, i, settings);
         if (!pipeline) detail::checkFailed(__FILE__, __LINE__, pipeline.error().message);
-        const protocol::TileStats stats =
-            (*pipeline)->draw(stateOf(camera, nearPlane(settings_, dataset_.manifest)));
+        tiles_.push_back(std::move(pipeline).value());
+    }
+}
+
+Picture WallServers::draw(const Camera& camera) {
+    Picture picture{ColorImage(wall_.width, wall_.height, 3), DepthImage(wall_.width, wall_.height, 1)};
+    stats_ = {};
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        const protocol::TileStats stats = tiles_[i]->draw(stateOf(camera, near_));
         stats_.triangles += stats.triangles;
+        stats_.hiddenPages += stats.hiddenPages;
+        stats_.hiddenRanges += stats.hiddenRanges;
         stats_.badPages += stats.badPages;
         stats_.fetchedBytes += stats.fetchedBytes;
-        paste((*pipeline)->renderer().readColor(), wall.tiles[i].onWall, picture.color);
-        paste((*pipeline)->renderer().readDepth(), wall.tiles[i].onWall, picture.depth);
+        paste(tiles_[i]->renderer().readColor(), wall_.tiles[i].onWall, picture.color);
+        paste(tiles_[i]->renderer().readDepth(), wall_.tiles[i].onWall, picture.depth);
     }
+    return picture;
+}
+
+Picture WallRenders::draw(const Wall& wall, const Camera& camera) {
+    WallServers servers(dataset_, wall, settings_);
+    Picture picture = servers.draw(camera);
+    stats_ = servers.stats();
     return picture;
 }
 

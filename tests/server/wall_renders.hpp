@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,29 @@ namespace iwalk::tools {
 // A wall of columns x rows tiles that cut width x height px as evenly as whole pixels allow, no bezels.
 Wall wallOf(int width, int height, int columns, int rows);
 
-// Draws the wall tile after tile in this process, without MPI and sockets, and stitches it. Needs a current
-// GL context.
+// The servers of a wall in this process, without MPI and sockets: what they remember from frame to frame,
+// they remember here. Needs a current GL context. Errors end the program.
+class WallServers {
+  public:
+    // Both are kept by reference.
+    WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings);
+    // Draws tile after tile; colour and eye-space depth of the whole wall.
+    Picture draw(const Camera& camera);
+    // Sums over the tiles of the last draw().
+    const protocol::TileStats& stats() const { return stats_; }
+
+  private:
+    const Wall& wall_;
+    const double near_;  // model units
+    std::vector<std::unique_ptr<TilePipeline>> tiles_;
+    protocol::TileStats stats_;
+};
+
+// Each picture by servers that have just begun.
 class WallRenders {
   public:
     WallRenders(const Dataset& dataset, Settings settings) : dataset_(dataset), settings_(settings) {}
-    // Colour and eye-space depth of the whole wall. Ends the program on errors.
     Picture draw(const Wall& wall, const Camera& camera);
-    // Sums over the tiles of the last draw().
     const protocol::TileStats& stats() const { return stats_; }
 
   private:

@@ -1,0 +1,105 @@
+#include "server/draw/visibility_buffer.hpp"
+
+#include <epoxy/gl.h>
+
+#include "server/draw/shaders.hpp"
+
+namespace iwalk {
+namespace {
+
+constexpr GLuint kNobody[] = {0, 0, 0, 0};
+constexpr GLfloat kInfinitelyFar[] = {0};
+
+GLuint makeTexture(GLenum format, int width, int height) {
+    GLuint texture = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+    glTextureStorage2D(texture, 1, format, width, height);
+    // Without this integers cannot be read, since they cannot be filtered.
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTextureParameteri(texture, filter, GL_NEAREST);
+    return texture;
+}
+
+}  // namespace
+
+VisibilityBuffer::~VisibilityBuffer() {
+    for (const Layer& layer : layers_) {
+        glDeleteFramebuffers(1, &layer.framebuffer);
+        glDeleteTextures(1, &layer.numbers);
+        glDeleteTextures(1, &layer.depths);
+    }
+    glDeleteProgram(restProgram_);
+    glDeleteVertexArrays(1, &emptyArray_);
+}
+
+Result<void> VisibilityBuffer::prepare(int width, int height) {
+    for (Layer& layer : layers_) RETURN_IF_ERROR(prepare(layer, width, height));
+    ASSIGN_OR_RETURN(restProgram_, compileRestProgram());
+    glCreateVertexArrays(1, &emptyArray_);
+    return {};
+}
+
+Result<void> VisibilityBuffer::prepare(Layer& layer, int width, int height) {
+    layer.numbers = makeTexture(GL_R32UI, width, height);
+    layer.depths = makeTexture(GL_DEPTH_COMPONENT32F, width, height);
+    glCreateFramebuffers(1, &layer.framebuffer);
+    glNamedFramebufferTexture(layer.framebuffer, GL_COLOR_ATTACHMENT0, layer.numbers, 0);
+    glNamedFramebufferTexture(layer.framebuffer, GL_DEPTH_ATTACHMENT, layer.depths, 0);
+    if (glCheckNamedFramebufferStatus(layer.framebuffer, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        return fail("this GL cannot draw {}x{} px with 32-bit float depth", width, height);
+    return {};
+}
+
+void VisibilityBuffer::clear() {
+    rest_ = false;
+    glClearNamedFramebufferuiv(layers_[0].framebuffer, GL_COLOR, 0, kNobody);
+    glClearNamedFramebufferfv(layers_[0].framebuffer, GL_DEPTH, 0, kInfinitelyFar);
+}
+
+void VisibilityBuffer::beginRest() {
+    CHECK(!rest_);
+    rest_ = true;
+    bind();
+    glDepthFunc(GL_ALWAYS);
+    glBindVertexArray(emptyArray_);
+    glUseProgram(restProgram_);
+    glBindTextureUnit(0, layers_[0].depths);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_GREATER);
+}
+
+void VisibilityBuffer::forgetNumbers() {
+    for (const Layer& layer : layers_) glClearNamedFramebufferuiv(layer.framebuffer, GL_COLOR, 0, kNobody);
+}
+
+void VisibilityBuffer::bind() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, layers_[rest_].framebuffer);
+}
+
+void VisibilityBuffer::bindForShading() const {
+    for (GLuint i = 0; i < 2; ++i) {
+        glBindTextureUnit(2 * i, layers_[i].numbers);
+        glBindTextureUnit(2 * i + 1, layers_[i].depths);
+    }
+}
+
+void VisibilityBuffer::readDepths(int width, int height, std::vector<float>& depths) const {
+    depths.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, layers_[rest_].framebuffer);
+    glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+}
+
+void VisibilityBuffer::readNumbers(int width, int height, std::vector<std::uint32_t>& numbers) const {
+    numbers.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    const auto read = [&](const Layer& layer, std::vector<std::uint32_t>& to) {
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, layer.framebuffer);
+        glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, to.data());
+    };
+    read(layers_[0], numbers);
+    if (!rest_) return;
+    std::vector<std::uint32_t> later(numbers.size());
+    read(layers_[1], later);
+    for (std::size_t i = 0; i < later.size(); ++i) numbers[i] = later[i] != 0 ? later[i] : numbers[i];
+}
+
+}  // namespace iwalk

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "server/draw/occlusion.hpp"
+#include "server/frame/page_drawing.hpp"
+
+namespace iwalk {
+
+// Conservative visibility (`--mode cplp`): all that can be seen is drawn, and little else. After GigaWalk,
+// section 5, and Correa, section 4.3: what was seen in the last frame is drawn first; of everything else that
+// the frustum has only what the depth of that does not hide. Pages that are hidden as a whole are not even
+// read. The picture is that of drawing everything, in every bit (docs/architecture.md, "Hidden is hidden").
+class ConservativeDrawing {
+  public:
+    // All outlive it.
+    ConservativeDrawing(const FrustumVisibility& visibility, PageCache& cache, Renderer& renderer,
+                        PageDrawing& pages, std::unique_ptr<Occlusion> occlusion)
+        : visibility_(visibility),
+          cache_(cache),
+          renderer_(renderer),
+          pages_(pages),
+          occlusion_(std::move(occlusion)) {}
+
+    // From beginning the block to its pixels. `candidates`: everything in the block's frustum, from near to
+    // far.
+    void drawBlock(const BlockView& view, std::span<const VisibleRanges> candidates,
+                   protocol::TileStats& stats);
+    // What was seen in all blocks since the last call is the next frame's guess.
+    void endFrame();
+
+  private:
+    using PageRange = std::pair<std::uint32_t, std::uint32_t>;  // page, range in the page
+    struct Draw {
+        std::uint32_t page;
+        std::size_t firstRange;  // in drawn_
+    };
+    std::vector<VisibleRanges> guessAmong(std::span<const VisibleRanges> candidates) const;
+    void look(protocol::TileStats& stats);
+    void drawGuess(const BlockView& view, std::span<const VisibleRanges> guess, protocol::TileStats& stats);
+    void drawRest(const BlockView& view, std::vector<VisibleRanges> open, protocol::TileStats& stats);
+    void hidePages(const BlockView& view, std::vector<VisibleRanges>& open, std::size_t from,
+                   protocol::TileStats& stats);
+    void drawSome(const BlockView& view, std::span<const VisibleRanges> some, protocol::TileStats& stats);
+    void drawOpen(std::vector<PageDrawing::Page>& open, protocol::TileStats& stats);
+    void draw(const PageDrawing::Page& page, protocol::TileStats& stats);
+    void removeGuessed(PageDrawing::Page& page) const;
+    void remember();
+
+    const FrustumVisibility& visibility_;
+    PageCache& cache_;
+    Renderer& renderer_;
+    PageDrawing& pages_;
+    const std::unique_ptr<Occlusion> occlusion_;
+
+    std::vector<PageRange> guess_, seen_;  // guess_ is sorted
+    // Of the block: its draws by number, and their ranges.
+    std::vector<Draw> draws_;
+    std::vector<DrawnRange> drawn_;
+    std::vector<ScreenBox> boxes_;       // scratch
+    std::vector<std::uint8_t> hidden_;   // scratch
+    std::vector<std::uint32_t> pixels_;  // scratch
+};
+
+}  // namespace iwalk

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "server/visibility/screen_box.hpp"
+
+namespace iwalk {
+
+// Hierarchical Z (Greene, Kass, Miller 1993): for squares of 1, 2, 4, ... px the farthest depth in them.
+// Depths are reversed, so the farthest is the least.
+class DepthPyramid {
+  public:
+    // Depths of the pixels (0, 0) to (width, height), row by row. Later questions must stay within them.
+    void build(std::span<const float> depths, int width, int height);
+
+    // Whether all pixels of the box are strictly nearer than it. Exact to the pixel; the pyramid only makes
+    // it fast.
+    bool hides(const ScreenBox& box) const;
+
+  private:
+    struct Level {
+        int width = 0, height = 0;  // in squares
+        std::vector<float> farthest;
+    };
+    bool hides(const ScreenBox& box, int level) const;
+
+    std::vector<Level> levels_;  // from squares of 1 px on
+};
+
+}  // namespace iwalk

@@ -1,0 +1,144 @@
+// iwalk-visibility-bench: what conservative visibility saves and costs on a moving path, everything resident.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <map>
+
+#include "server/draw/gl_context.hpp"
+#include "tests/bench/visibility/bench_tile.hpp"
+#include "tests/server/wall_renders.hpp"
+
+namespace {
+
+using namespace iwalk;
+using bench::BenchTile;
+using bench::Method;
+
+struct Options {
+    std::string dataset, views;
+    int frames = 10, width = 1024, height = 768;
+    double step = 0.001;
+    bool slow = false;
+};
+
+// Straight ahead from a view, `step` of the model's diagonal a frame.
+Camera onTheWay(Camera camera, const Manifest& manifest, double steps) {
+    const double diagonal = glm::distance(manifest.bounds.min, manifest.bounds.max);
+    const glm::dvec3 move = steps * diagonal * glm::normalize(camera.target - camera.eye);
+    camera.eye += move;
+    camera.target += move;
+    return camera;
+}
+
+TileView viewOf(const Dataset& dataset, const Wall& wall, const Camera& camera) {
+    TileView view;
+    view.projection = projectScreen(wall.screens(camera.fovY)[0], camera);
+    view.screenWidth = wall.width;
+    view.screenHeight = wall.height;
+    view.tile = wall.tiles[0].onScreen;
+    view.eye = LatticeEye::at(camera.eye, dataset.manifest.stepExponent);
+    view.near = std::ldexp(nearPlane({}, dataset.manifest), -dataset.manifest.stepExponent);
+    return view;
+}
+
+// What is measured, by name: one value a frame.
+using Series = std::map<std::string, std::vector<double>>;
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values.empty() ? 0 : values[values.size() / 2];
+}
+
+void note(Series& series, const std::string& name, const protocol::TileStats& stats) {
+    series[name + ".ms"].push_back(stats.drawMs);
+    series[name + ".triangles"].push_back(static_cast<double>(stats.triangles));
+    series[name + ".ranges"].push_back(static_cast<double>(stats.ranges));
+    if (name == "frustum" || name == "oracle" || name == "perfect") return;
+    series[name + ".walk_ms"].push_back(stats.visibilityMs);
+    series[name + ".guess_ms"].push_back(stats.guessMs);
+    series[name + ".guess_triangles"].push_back(static_cast<double>(stats.guessTriangles));
+    series[name + ".pyramid_ms"].push_back(stats.pyramidMs);
+    series[name + ".test_ms"].push_back(stats.testMs);
+    series[name + ".hidden_pages"].push_back(static_cast<double>(stats.hiddenPages));
+    series[name + ".hidden_ranges"].push_back(static_cast<double>(stats.hiddenRanges));
+}
+
+struct Tiles {
+    BenchTile frustum, hzb, queries, items, oracle;
+    Tiles(const Dataset& dataset, const PixelRect& rect)
+        : frustum(dataset, rect, Method::frustum),
+          hzb(dataset, rect, Method::hzb),
+          queries(dataset, rect, Method::queries),
+          items(dataset, rect, Method::items),
+          oracle(dataset, rect, Method::frustum) {}
+};
+
+// All methods draw each frame one after the other, so that they share what else the machine does.
+void drawFrame(Tiles& tiles, const TileView& view, const Options& options, Series& series) {
+    const std::vector<VisibleRanges> all = tiles.frustum.inFrustum(view);
+    note(series, "frustum", tiles.frustum.drawRanges(view, all));
+    const std::vector<VisibleRanges> perfect = tiles.frustum.notHidden(view);
+    tiles.frustum.packOwners(tiles.oracle);
+    note(series, "hzb", tiles.hzb.draw(view));
+    if (options.slow) note(series, "queries", tiles.queries.draw(view));
+    if (options.slow) note(series, "items", tiles.items.draw(view));
+    note(series, "perfect", tiles.frustum.drawRanges(view, perfect));
+    note(series, "oracle", tiles.oracle.drawPacked(view));
+}
+
+void print(std::size_t view, const Series& series) {
+    std::printf("{\"view\": %zu", view);
+    for (const auto& [name, values] : series) std::printf(", \"%s\": %.6g", name.c_str(), median(values));
+    std::printf("}\n");
+    std::fflush(stdout);
+}
+
+Result<void> run(const Options& options) {
+    ASSIGN_OR_RETURN(const Dataset dataset, openDataset(options.dataset));
+    ASSIGN_OR_RETURN(const std::vector<Camera> views, loadCameraPath(options.views));
+    ASSIGN_OR_RETURN(const std::unique_ptr<GlContext> context, GlContext::createHeadless());
+    const Wall wall = tools::wallOf(options.width, options.height, 1, 1);
+    Tiles tiles(dataset, wall.tiles[0].onScreen);
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        Series series;
+        for (int frame = -2; frame < options.frames; ++frame) {
+            Series unused;
+            const Camera camera = onTheWay(views[v], dataset.manifest, frame * options.step);
+            drawFrame(tiles, viewOf(dataset, wall, camera), options, frame < 0 ? unused : series);
+        }
+        print(v, series);
+    }
+    return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app(
+        "Flies straight ahead from each view. Prints one JSON object a view with medians: frame times (ms), "
+        "triangles "
+        "and ranges drawn, times of the stages, by method: frustum, hzb, queries and items (item buffer), "
+        "perfect "
+        "(what the frame's own depth leaves at the grain of ranges), oracle (triangles that own a pixel).");
+    app.option_defaults()->always_capture_default();
+    app.add_option("DATASET", options.dataset, "directory that iwalk-preprocess made")->required();
+    app.add_option("VIEWS", options.views, "camera path (JSON), each frame a view to begin at")->required();
+    app.add_option("--frames", options.frames, "frames a view, behind two that are not counted");
+    app.add_option("--step", options.step, "way from frame to frame, in diagonals of the model");
+    app.add_option("--width", options.width, "px, at most 1024");
+    app.add_option("--height", options.height, "px, at most 1024");
+    app.add_flag("--slow", options.slow, "with queries and items, too");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    const Result<void> done = run(options);
+    if (!done) std::fprintf(stderr, "iwalk-visibility-bench: %s\n", done.error().message.c_str());
+    return done ? 0 : 1;
+}

@@ -1,0 +1,59 @@
+#include "server/visibility/depth_pyramid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace iwalk {
+namespace {
+
+bool hidesByLooking(const std::vector<float>& depths, int width, const ScreenBox& box) {
+    for (int y = box.top; y < box.bottom; ++y)
+        for (int x = box.left; x < box.right; ++x)
+            if (depths[static_cast<std::size_t>(y * width + x)] <= box.depth) return false;
+    return true;
+}
+
+TEST(DepthPyramid, IsExactToThePixel) {
+    std::mt19937 random(3);
+    const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+    for (const auto& [width, height] : {std::pair(1, 1), {7, 3}, {64, 64}, {65, 33}, {3, 100}, {317, 211}}) {
+        // Flat surfaces with a few holes and steps, so that either answer is frequent.
+        std::vector<float> depths(static_cast<std::size_t>(width * height), 0.5f);
+        for (int i = 0; i < width * height / 50; ++i)
+            depths[random() % depths.size()] = static_cast<float>(below(5)) / 4;
+        DepthPyramid pyramid;
+        pyramid.build(depths, width, height);
+        int hidden = 0;
+        for (int i = 0; i < 3000; ++i) {
+            ScreenBox box;
+            box.left = below(width), box.top = below(height);
+            box.right = box.left + 1 + below(std::min(width - box.left, 1 + below(40)));
+            box.bottom = box.top + 1 + below(std::min(height - box.top, 1 + below(40)));
+            box.depth = static_cast<float>(below(9)) / 8;
+            const bool hides = pyramid.hides(box);
+            ASSERT_EQ(hides, hidesByLooking(depths, width, box));
+            hidden += hides;
+        }
+        EXPECT_GT(hidden, 100);
+        EXPECT_LT(hidden, 2900);
+    }
+}
+
+TEST(DepthPyramid, ASurfaceAsNearAsTheBoxHidesNothing) {
+    DepthPyramid pyramid;
+    pyramid.build(std::vector<float>(12, 0.25f), 4, 3);
+    EXPECT_FALSE(pyramid.hides({1, 1, 3, 2, 0.25f}));
+    EXPECT_TRUE(pyramid.hides({1, 1, 3, 2, std::nextafter(0.25f, 0.0f)}));
+    EXPECT_FALSE(pyramid.hides({0, 0, 4, 3, ScreenBox::kAtTheEye}));
+}
+
+TEST(DepthPyramid, NothingHidesWhereNothingIsDrawn) {
+    DepthPyramid pyramid;
+    pyramid.build(std::vector<float>(12, 0.0f), 4, 3);
+    EXPECT_FALSE(pyramid.hides({0, 0, 1, 1, 0}));
+    EXPECT_TRUE(pyramid.hides({2, 2, 2, 3, 1}));  // no pixel, nothing to be seen
+}
+
+}  // namespace
+}  // namespace iwalk
