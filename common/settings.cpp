@@ -126,6 +126,15 @@ std::string occlusionText(OcclusionTest occlusion) {
     return occlusion == OcclusionTest::hzb ? "hzb" : "queries";
 }
 
+constexpr std::array<const char*, 5> kShows{"none", "ranges", "levels", "cache", "overdraw"};
+
+Result<void> parseShow(Settings& settings, const std::string& text) {
+    const auto found = std::find(kShows.begin(), kShows.end(), text);
+    if (found == kShows.end()) return fail("choose none, ranges, levels, cache or overdraw");
+    settings.show = static_cast<Show>(found - kShows.begin());
+    return {};
+}
+
 // Everything there is to know about a setting; a new one is one more row here.
 struct Row {
     SettingInfo info;
@@ -133,7 +142,7 @@ struct Row {
     std::string (*print)(const Settings&);
 };
 
-constexpr std::size_t kRows = 9;
+constexpr std::size_t kRows = 10;
 const std::array<Row, kRows>& rows() {
     static const std::array<Row, kRows> table{{
         {{"cache", "BYTES",
@@ -184,6 +193,13 @@ const std::array<Row, kRows>& rows() {
           "occlusion queries"},
          parseOcclusion,
          [](const Settings& s) { return occlusionText(s.occlusion); }},
+        {{"show", "none|ranges|levels|cache|overdraw",
+          "what colours mean, default none, the model's own: ranges, each another; levels, from blue (0) to "
+          "red, full "
+          "grey; cache, green what was in memory and red what this frame read; overdraw, how many triangles "
+          "cover the pixel: 1 blue, 4 teal, 16 green, 64 yellow, 256 white"},
+         parseShow,
+         [](const Settings& s) { return std::string(kShows[static_cast<std::size_t>(s.show)]); }},
     }};
     return table;
 }

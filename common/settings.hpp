@@ -14,6 +14,7 @@ namespace iwalk {
 enum class Shading : std::uint8_t { automatic, flat, smooth };
 enum class Ramp : std::uint8_t { automatic, none, height };
 enum class Mode : std::uint8_t { frustum, cplp };
+enum class Show : std::uint8_t { none, ranges, levels, cache, overdraw };
 enum class OcclusionTest : std::uint8_t { hzb, queries };
 
 // Every run-time setting of a server, the same on every tile. The command line, the [settings] table of a
@@ -28,6 +29,7 @@ struct Settings {
     std::uint8_t level = kFullLevel;      // that all of the model is drawn at
     Mode mode = Mode::cplp;
     OcclusionTest occlusion = OcclusionTest::hzb;  // of Mode::cplp
+    Show show = Show::none;
 };
 
 // One row of the table: how people write a setting.

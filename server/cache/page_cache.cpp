@@ -86,7 +86,7 @@ PageCache::Next PageCache::next() {
     }
     evictable_.erase(entry.key);
     pinned_.push_back(page);
-    return {Answer::page, {page, entry.place, &entry.table}};
+    return {Answer::page, {page, entry.place, &entry.table, entry.fetched == frame_}};
 }
 
 void PageCache::release() {
@@ -169,6 +169,7 @@ void PageCache::load(std::uint32_t page, std::unique_lock<std::mutex>& lock, std
         entry.place = *place;
         entry.table = std::move(table).value();
         entry.state = State::resident;
+        entry.fetched = frame_;
         makeEvictable(page);
     } else {
         if (!entry.reported) spdlog::error("{} (drawn without page {})", table.error().message, page);

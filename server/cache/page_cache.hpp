@@ -21,6 +21,7 @@ struct ResidentPage {
     std::uint32_t page = 0;
     ArenaPlace place;
     const PageTable* table = nullptr;
+    bool fetched = false;  // read since beginFrame()
 };
 
 // The geometry cache: pages of a dataset, decoded into an arena of bounded size by fetch threads.
@@ -82,6 +83,7 @@ class PageCache {
         State state = State::absent;
         bool reported = false;       // its being bad has been said
         std::uint64_t frame = 0;     // the last frame that wanted it
+        std::uint64_t fetched = 0;   // the frame that it was read in
         std::uint32_t position = 0;  // in that frame
         Victim key;                  // while in evictable_
         ArenaPlace place;

@@ -7,12 +7,12 @@
 #include <epoxy/gl.h>
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
+#include "server/draw/gl_objects.hpp"
 #include "server/draw/shaders.hpp"
 #include "server/draw/visibility_buffer.hpp"
 
@@ -23,25 +23,6 @@ namespace {
 constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
 constexpr std::uint32_t kNoBank = 0xffffffff;  // of pages that are not there any more
-constexpr int kMaxWindow = 16384;              // px: GL 4.5's least largest viewport
-
-// The square of the screen that clip space spans while a block is drawn. Its edge is a power of two, so that
-// transforms are exact. Screens wider than the largest viewport have a window for each strip of half that
-// size; like blocks, strips belong to the screen and not to the tile.
-struct Window {
-    int x = 0, y = 0, edge = 0;  // px of the screen
-};
-
-Window windowFor(const TileView& view, const Block& block) {
-    const int longest = std::max(view.screenWidth, view.screenHeight);
-    const int edge = std::min(kMaxWindow, static_cast<int>(std::bit_ceil(static_cast<unsigned>(longest))));
-    const int strip = edge / 2;
-    const auto start = [&](int from, int screen) {
-        return screen <= edge ? 0 : from / strip * strip - strip / 2;
-    };
-    return {start(block.x, view.screenWidth), start(block.y, view.screenHeight), edge};
-}
-static_assert(kMaxWindow / 2 % kBlockEdge == 0);
 
 class GlRenderer : public Renderer {
   public:
@@ -69,6 +50,7 @@ class GlRenderer : public Renderer {
     void addDepthTarget();
     std::uint32_t addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
                           const glm::dvec3& origin, std::uint32_t rank);
+    void addTints(const ResidentPage& page, std::span<const DrawnRange> ranges);
     glm::ivec2 blockSize() const {
         return {block_.part.x + block_.part.width - block_.x, block_.part.y + block_.part.height - block_.y};
     }
@@ -89,29 +71,14 @@ class GlRenderer : public Renderer {
     GLuint emptyArray_ = 0;
     std::array<GLuint, kShadeVariants> shadingPrograms_{};
     std::vector<GLuint> banks_;
-    GLuint pagesBuffer_ = 0;
-    std::vector<ShadedPage> slots_;  // by slot: what was drawn in this block
-    std::size_t unshaded_ = 0;       // slots from here on have not been shaded
+    GLuint pagesBuffer_ = 0, tintsBuffer_ = 0;
+    std::vector<ShadedPage> slots_;     // by slot: what was drawn in this block
+    std::vector<std::uint32_t> tints_;  // of slots, as in ShadedPage::tints
+    std::size_t unshaded_ = 0;          // slots from here on have not been shaded
     TileView view_;
     Block block_;
     GLuint used_ = 0;  // the visibility program that has this block's uniforms and is in use
 };
-
-GLuint makeTexture(GLenum format, int width, int height) {
-    GLuint texture = 0;
-    glCreateTextures(GL_TEXTURE_2D, 1, &texture);
-    glTextureStorage2D(texture, 1, format, width, height);
-    return texture;
-}
-
-GLuint makeVertexArray(GLint components) {
-    GLuint array = 0;
-    glCreateVertexArrays(1, &array);
-    glEnableVertexArrayAttrib(array, 0);
-    glVertexArrayAttribIFormat(array, 0, components, GL_UNSIGNED_INT, 0);
-    glVertexArrayAttribBinding(array, 0, 0);
-    return array;
-}
 
 GlRenderer::~GlRenderer() {
     for (const GLuint program : visibilityPrograms_) glDeleteProgram(program);
@@ -122,6 +89,7 @@ GlRenderer::~GlRenderer() {
     for (const GLuint framebuffer : {framebuffer_, captureFramebuffer_})
         glDeleteFramebuffers(1, &framebuffer);
     glDeleteBuffers(1, &pagesBuffer_);
+    glDeleteBuffers(1, &tintsBuffer_);
     glDeleteBuffers(static_cast<GLsizei>(banks_.size()), banks_.data());
 }
 
@@ -134,11 +102,12 @@ Result<void> GlRenderer::prepare() {
             width_, height_, largest);
     RETURN_IF_ERROR(makeFramebuffers());
     for (const bool wide : {false, true}) {
-        ASSIGN_OR_RETURN(visibilityPrograms_[wide], compileVisibilityProgram(wide));
+        ASSIGN_OR_RETURN(visibilityPrograms_[wide], compileVisibilityProgram(wide, look_.overdraw));
         vertexArrays_[wide] = makeVertexArray(wide ? 3 : 2);
     }
     glCreateVertexArrays(1, &emptyArray_);
     glCreateBuffers(1, &pagesBuffer_);
+    glCreateBuffers(1, &tintsBuffer_);
     glNamedBufferStorage(pagesBuffer_, kMaxSlots * sizeof(ShadedPage), nullptr, GL_DYNAMIC_STORAGE_BIT);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDepthFunc(GL_GREATER);
@@ -152,7 +121,7 @@ Result<void> GlRenderer::makeFramebuffers() {
         blockWidth = std::max(blockWidth, block.part.x + block.part.width - block.x);
         blockHeight = std::max(blockHeight, block.part.y + block.part.height - block.y);
     }
-    RETURN_IF_ERROR(visible_.prepare(blockWidth, blockHeight));
+    RETURN_IF_ERROR(visible_.prepare(blockWidth, blockHeight, look_.overdraw));
     color_ = makeTexture(GL_RGBA8, width_, height_);
     glCreateFramebuffers(1, &framebuffer_);
     glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, color_, 0);
@@ -204,6 +173,7 @@ void GlRenderer::beginBlock(const Block& block) {
     block_ = block;
     used_ = 0;
     slots_.clear();
+    tints_.clear();
     unshaded_ = 0;
     visible_.clear();
 }
@@ -228,7 +198,7 @@ void GlRenderer::useVisibilityProgram(bool wide) {
     glUseProgram(used_);
     glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
     glUniform1f(kNear, static_cast<float>(view_.near));
-    const Window window = windowFor(view_, block_);
+    const Window window = windowFor(view_.screenWidth, view_.screenHeight, block_);
     const float half = static_cast<float>(window.edge) / 2;
     glViewport(window.x - block_.x, window.y - block_.y, window.edge, window.edge);
     glScissor(block_.part.x - block_.x, block_.part.y - block_.y, block_.part.width, block_.part.height);
@@ -242,6 +212,7 @@ std::uint32_t GlRenderer::draw(const ResidentPage& page, const PageRecord& recor
     const PageLayout layout = pageLayout(record);
     const glm::dvec3 origin = view_.eye.to(page.table->origin);
     const std::uint32_t slot = addSlot(page, record, layout, origin, rank);
+    if (look_.tints) addTints(page, ranges);
 
     useVisibilityProgram(wide);
     const GLuint buffer = banks_[page.place.bank];
@@ -260,11 +231,20 @@ std::uint32_t GlRenderer::draw(const ResidentPage& page, const PageRecord& recor
     return slot;
 }
 
+void GlRenderer::addTints(const ResidentPage& page, std::span<const DrawnRange> ranges) {
+    tints_.push_back(static_cast<std::uint32_t>(ranges.size()));
+    for (const DrawnRange& range : ranges) {
+        tints_.push_back(range.firstIndex / 3);
+        tints_.push_back(look_.tints.of(page, range.range));
+    }
+}
+
 // More pages than numbers: what was drawn so far keeps its depth and loses its place in the order.
 void GlRenderer::startNumbersAgain() {
     shade();
     visible_.forgetNumbers();
     slots_.clear();
+    tints_.clear();
     unshaded_ = 0;
 }
 
@@ -307,7 +287,7 @@ std::uint32_t GlRenderer::addSlot(const ResidentPage& page, const PageRecord& re
          page.place.bank,
          record.flags & kPageWide ? 1u : 0u,
          rank,
-         0});
+         static_cast<std::uint32_t>(tints_.size())});
     return static_cast<std::uint32_t>(slots_.size() - 1);
 }
 
@@ -330,6 +310,11 @@ void GlRenderer::shade() {
     glBindVertexArray(emptyArray_);
     visible_.bindForShading();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kPagesBinding, pagesBuffer_);
+    if (look_.tints) {
+        glNamedBufferData(tintsBuffer_, static_cast<GLsizeiptr>(4 * tints_.size()), tints_.data(),
+                          GL_STREAM_DRAW);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kTintsBinding, tintsBuffer_);
+    }
     useShadingProgram();
     std::vector<bool> used(banks_.size());
     for (; unshaded_ < slots_.size(); ++unshaded_) {
@@ -351,6 +336,8 @@ std::uint32_t GlRenderer::shadingVariant() const {
     if (view_.captureDepth) variant |= kShadeDepth;
     if (visible_.hasRest()) variant |= kShadeRest;
     if (look_.normals && look_.shading != Shading::flat) variant |= kShadeSmooth;
+    if (look_.tints) return variant | kShadeTint;
+    if (look_.overdraw) return variant | kShadeOverdraw;
     if (look_.ramp == Ramp::height || (look_.ramp == Ramp::automatic && !look_.colors))
         return variant | kShadeRamp;
     if (look_.colors) variant |= kShadeColors;
@@ -395,19 +382,6 @@ DepthImage GlRenderer::readDepth() {
 }
 
 }  // namespace
-
-std::vector<Block> blocksOf(const PixelRect& tile) {
-    std::vector<Block> blocks;
-    const int right = tile.x + tile.width, bottom = tile.y + tile.height;
-    for (int y = tile.y / kBlockEdge * kBlockEdge; y < bottom; y += kBlockEdge)
-        for (int x = tile.x / kBlockEdge * kBlockEdge; x < right; x += kBlockEdge) {
-            const int left = std::max(x, tile.x), top = std::max(y, tile.y);
-            const int width = std::min(x + kBlockEdge, right) - left,
-                      height = std::min(y + kBlockEdge, bottom) - top;
-            blocks.push_back({x, y, {left, top, width, height}});
-        }
-    return blocks;
-}
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const PixelRect& tile, const SceneLook& look) {
     auto renderer = std::make_unique<GlRenderer>(tile, look);

@@ -51,7 +51,13 @@ const char* const kVisibilityFragment = R"(
 layout(location = 4) uniform uint firstId;
 layout(location = 11) uniform float nearest;
 layout(location = 0) out uint id;
+#if COUNTS
+layout(binding = 0, r32ui) uniform uimage2D counts;
+#endif
 void main() {
+#if COUNTS
+    imageAtomicAdd(counts, ivec2(gl_FragCoord.xy), 1u);
+#endif
     id = firstId + uint(gl_PrimitiveID);
     gl_FragDepth = min(gl_FragCoord.z, nearest);
 }
@@ -108,9 +114,16 @@ struct Page {
     uint bank;
     uint wide;
     uint rank;
+    uint tints;
 };
 layout(std430, binding = 0) readonly buffer Words { uint words[]; };
 layout(std430, binding = 1) readonly buffer Pages { Page pages[]; };
+#if TINT
+layout(std430, binding = 2) readonly buffer Tints { uint tints[]; };
+#endif
+#if OVERDRAW
+layout(binding = 0, r32ui) readonly uniform uimage2D counts;
+#endif
 
 layout(location = 0) out vec4 color;
 #if DEPTH
@@ -153,6 +166,19 @@ vec3 rampColor(float height) {
     int i = min(int(at), 3);
     return mix(stops[i], stops[i + 1], at - float(i));
 }
+
+#if TINT
+// Of the last range that begins at or before the triangle.
+vec3 tintOf(uint at, uint triangle) {
+    uint low = 0u, high = tints[at];
+    while (high - low > 1u) {
+        uint middle = (low + high) / 2u;
+        if (tints[at + 1u + 2u * middle] <= triangle) low = middle;
+        else high = middle;
+    }
+    return unpackUnorm4x8(tints[at + 2u + 2u * low]).rgb;
+}
+#endif
 
 // The nearest triangle; of equally near ones the first in the order of pages, then in the page.
 uint nearestTriangle(ivec2 pixel) {
@@ -205,6 +231,12 @@ void main() {
 #endif
 #if RAMP
     base = rampColor((t * direction.z - ramp.x) * ramp.y);
+#endif
+#if TINT
+    base = tintOf(pages[slot].tints, id & 0xffffu);
+#endif
+#if OVERDRAW
+    base = rampColor(log2(float(imageLoad(counts, ivec2(gl_FragCoord.xy) + inBlock).r)) / 8.0);
 #endif
 #if COLORS
     vec3 c0 = colorOf(streams.y, corner.x);
@@ -268,8 +300,8 @@ Result<std::uint32_t> compile(const std::string& defines, const char* vertexSour
 
 }  // namespace
 
-Result<std::uint32_t> compileVisibilityProgram(bool wide) {
-    return compile(define("WIDE", wide), kVertex, kVisibilityFragment);
+Result<std::uint32_t> compileVisibilityProgram(bool wide, bool counts) {
+    return compile(define("WIDE", wide) + define("COUNTS", counts), kVertex, kVisibilityFragment);
 }
 
 Result<std::uint32_t> compileRestProgram() {
@@ -283,7 +315,8 @@ Result<std::uint32_t> compileBoxProgram() {
 Result<std::uint32_t> compileShadingProgram(std::uint32_t variant) {
     return compile(define("COLORS", variant & kShadeColors) + define("SMOOTH", variant & kShadeSmooth) +
                        define("DEPTH", variant & kShadeDepth) + define("RAMP", variant & kShadeRamp) +
-                       define("REST", variant & kShadeRest),
+                       define("REST", variant & kShadeRest) + define("TINT", variant & kShadeTint) +
+                       define("OVERDRAW", variant & kShadeOverdraw),
                    kWholeTile, kShadingFragment);
 }
 

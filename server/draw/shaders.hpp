@@ -11,12 +11,14 @@ namespace iwalk {
 
 // What a shading program is compiled for: bits.
 enum ShadingVariant : std::uint32_t {
-    kShadeColors = 1,  // pages have colours, and they are used
-    kShadeSmooth = 2,  // pages have normals, and they are used
-    kShadeDepth = 4,   // writes eye-space depth to a second target
-    kShadeRamp = 8,    // coloured by height
-    kShadeRest = 16,   // the visibility buffer has a second layer
-    kShadeVariants = 32,
+    kShadeColors = 1,     // pages have colours, and they are used
+    kShadeSmooth = 2,     // pages have normals, and they are used
+    kShadeDepth = 4,      // writes eye-space depth to a second target
+    kShadeRamp = 8,       // coloured by height
+    kShadeRest = 16,      // the visibility buffer has a second layer
+    kShadeTint = 32,      // coloured by Tints
+    kShadeOverdraw = 64,  // coloured by how many triangles cover a pixel
+    kShadeVariants = 128,
 };
 
 // Where the uniforms are; the same in all programs that have them.
@@ -43,14 +45,17 @@ struct ShadedPage {
     std::uint32_t bank;
     std::uint32_t wide;  // 1: positions as 3 x 32 bits
     std::uint32_t rank;  // pages of equal depth: the lower one is seen
-    std::uint32_t unused;
+    std::uint32_t
+        tints;  // where its tints begin, 32-bit words: their number, then first triangle and tint of each
 };
 static_assert(sizeof(ShadedPage) == 64);
 
-enum StorageBinding : std::uint32_t { kWordsBinding = 0, kPagesBinding = 1 };
+enum StorageBinding : std::uint32_t { kWordsBinding = 0, kPagesBinding = 1, kTintsBinding = 2 };
+enum ImageBinding : std::uint32_t { kCountsBinding = 0 };  // how many triangles cover each pixel of a block
 
-// Compile and link; the error holds the GL's log. The first pass comes for narrow and for wide pages.
-Result<std::uint32_t> compileVisibilityProgram(bool wide);
+// Compile and link; the error holds the GL's log. The first pass comes for narrow and for wide pages, and may
+// count triangles on the way.
+Result<std::uint32_t> compileVisibilityProgram(bool wide, bool counts);
 Result<std::uint32_t> compileRestProgram();  // begins the visibility buffer's second layer
 Result<std::uint32_t> compileBoxProgram();   // a rectangle at one depth, no colour
 Result<std::uint32_t> compileShadingProgram(std::uint32_t variant);

@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 
+#include "server/draw/gl_objects.hpp"
 #include "server/draw/shaders.hpp"
 
 namespace iwalk {
@@ -9,16 +10,6 @@ namespace {
 
 constexpr GLuint kNobody[] = {0, 0, 0, 0};
 constexpr GLfloat kInfinitelyFar[] = {0};
-
-GLuint makeTexture(GLenum format, int width, int height) {
-    GLuint texture = 0;
-    glCreateTextures(GL_TEXTURE_2D, 1, &texture);
-    glTextureStorage2D(texture, 1, format, width, height);
-    // Without this integers cannot be read, since they cannot be filtered.
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-        glTextureParameteri(texture, filter, GL_NEAREST);
-    return texture;
-}
 
 }  // namespace
 
@@ -29,13 +20,18 @@ VisibilityBuffer::~VisibilityBuffer() {
         glDeleteTextures(1, &layer.depths);
     }
     glDeleteProgram(restProgram_);
+    glDeleteTextures(1, &counts_);
     glDeleteVertexArrays(1, &emptyArray_);
 }
 
-Result<void> VisibilityBuffer::prepare(int width, int height) {
+Result<void> VisibilityBuffer::prepare(int width, int height, bool counts) {
     for (Layer& layer : layers_) RETURN_IF_ERROR(prepare(layer, width, height));
     ASSIGN_OR_RETURN(restProgram_, compileRestProgram());
     glCreateVertexArrays(1, &emptyArray_);
+    if (counts) {
+        counts_ = makeTexture(GL_R32UI, width, height);
+        glBindImageTexture(kCountsBinding, counts_, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+    }
     return {};
 }
 
@@ -52,6 +48,7 @@ Result<void> VisibilityBuffer::prepare(Layer& layer, int width, int height) {
 
 void VisibilityBuffer::clear() {
     rest_ = false;
+    if (counts_ != 0) glClearTexImage(counts_, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
     glClearNamedFramebufferuiv(layers_[0].framebuffer, GL_COLOR, 0, kNobody);
     glClearNamedFramebufferfv(layers_[0].framebuffer, GL_DEPTH, 0, kInfinitelyFar);
 }
@@ -77,6 +74,7 @@ void VisibilityBuffer::bind() const {
 }
 
 void VisibilityBuffer::bindForShading() const {
+    if (counts_ != 0) glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     for (GLuint i = 0; i < 2; ++i) {
         glBindTextureUnit(2 * i, layers_[i].numbers);
         glBindTextureUnit(2 * i + 1, layers_[i].depths);

@@ -19,7 +19,9 @@ class VisibilityBuffer {
     VisibilityBuffer(const VisibilityBuffer&) = delete;
     VisibilityBuffer& operator=(const VisibilityBuffer&) = delete;
 
-    Result<void> prepare(int width, int height);  // px: the largest block
+    // px: the largest block. With `counts`, programs may count in an image of 32-bit integers
+    // (kCountsBinding).
+    Result<void> prepare(int width, int height, bool counts);
 
     void clear();          // nothing drawn; one layer
     void beginRest();      // goes on in the second layer; wants the block's viewport and the depth test
@@ -41,7 +43,7 @@ class VisibilityBuffer {
     Result<void> prepare(Layer& layer, int width, int height);
 
     Layer layers_[2];
-    std::uint32_t restProgram_ = 0, emptyArray_ = 0;  // GL names
+    std::uint32_t restProgram_ = 0, emptyArray_ = 0, counts_ = 0;  // GL names; 0: no counts
     bool rest_ = false;
 };
 

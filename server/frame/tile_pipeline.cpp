@@ -46,6 +46,8 @@ SceneLook lookOf(const Dataset& dataset, const Settings& settings) {
     look.shading = settings.shading;
     look.ramp = settings.ramp;
     look.background = settings.background;
+    look.tints = Tints(dataset.hierarchy, settings.show);
+    look.overdraw = settings.show == Show::overdraw;
     return look;
 }
 
