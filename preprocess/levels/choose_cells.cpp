@@ -1,0 +1,81 @@
+#include "preprocess/levels/choose_cells.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace iwalk {
+namespace {
+
+// What one cell decides about at once: large enough that few vertices lie at borders.
+constexpr std::uint64_t kCellTriangles = 65536;
+// Cells are not smaller than this many times the level's error, since vertices near their borders stay.
+constexpr float kLeastCell = 16;
+
+// Of the pass that made or makes the model's `level`.
+std::vector<LatticeCell> cellsOf(const LevelModel& model, unsigned level) {
+    const std::vector<CellPoint> corners = model.cells();
+    std::vector<Weight> weights;
+    for (std::uint32_t node = 0; node < model.nodes.size(); ++node) {
+        const LevelRecord* const entry = changingEntry(model, node, level);
+        if (entry == nullptr) continue;
+        const std::uint64_t edge = std::uint64_t{1} << (model.lattice.rootCellLog2 - model.depth(node));
+        weights.push_back({model.lattice.fromCell(corners[node]), edge, entry->triangles});
+    }
+    const int errorLog2 = static_cast<int>(model.lattice.rootCellLog2) - static_cast<int>(level);
+    const float leastEdge = kLeastCell * limitsAt(model.lattice.rootCellLog2, level).error;
+    return cutCells(weights, errorLog2, kCellTriangles, static_cast<std::uint64_t>(leastEdge));
+}
+
+bool comesBefore(const LatticeCell& a, const LatticeCell& b) {
+    const auto key = [](const LatticeCell& c) {
+        return std::tuple(c.low.x, c.low.y, c.low.z, c.high.x, c.high.y, c.high.z);
+    };
+    return key(a) < key(b);
+}
+
+// A cell, and whether it must be decided.
+struct Choice {
+    SpaceCell cell;
+    bool chosen;
+};
+
+// Chooses the cells that vertices of the page lie in.
+void choose(const StagePage& page, const SourcePage& source, std::vector<Choice>& choices) {
+    for (Choice& choice : choices) {
+        if (choice.chosen || !choice.cell.meets(page.low, page.high)) continue;
+        choice.chosen = std::ranges::any_of(source.positions,
+                                            [&](const CellPoint& p) { return choice.cell.contains(p); });
+    }
+}
+
+}  // namespace
+
+std::optional<unsigned> oldLevel(const OldTree& old, unsigned level) {
+    if (!old.exists() || level < old.grownBy()) return std::nullopt;
+    return level - old.grownBy();
+}
+
+Result<std::vector<SpaceCell>> chooseCells(const LevelModel& model, const Stage& stage, const OldTree& old,
+                                           PageStore& store) {
+    const std::optional<unsigned> before = oldLevel(old, stage.level);
+    std::vector<LatticeCell> same;
+    if (before) same = cellsOf(old.model(), *before);
+    std::ranges::sort(same, comesBefore);
+    std::vector<Choice> choices;
+    for (const LatticeCell& cell : cellsOf(model, stage.level)) {
+        const bool isNew = !std::ranges::binary_search(same, cell, comesBefore);
+        if (const auto inside = inRoot(cell, model.lattice)) choices.push_back({*inside, isNew});
+    }
+    for (const StagePage& page : stage.pages) {
+        if (!page.fresh || !before) continue;
+        ASSIGN_OR_RETURN(const std::shared_ptr<const SourcePage> source, store.get(page.number, page.record));
+        choose(page, *source, choices);
+    }
+    std::vector<SpaceCell> cells;
+    for (const Choice& choice : choices) {
+        if (choice.chosen) cells.push_back(choice.cell);
+    }
+    return cells;
+}
+
+}  // namespace iwalk
