@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "common/dataset/morph.hpp"
-#include "preprocess/levels/choose_cells.hpp"
 #include "preprocess/levels/parallel.hpp"
 #include "preprocess/levels/remake.hpp"
 
@@ -114,31 +113,26 @@ Result<void> LevelApplier::load(std::uint32_t begin, std::uint32_t end) {
     return {};
 }
 
-// Where the page's vertices go as far as cells do not say: they stay, but for those of a page that was there
-// before in cells that are not decided again, which go where they went.
+// Where the page's vertices go as far as decisions do not say: they stay in cells that were decided, and go
+// where they went before in others.
 Result<void> LevelApplier::findTargets(std::uint32_t index) {
     const StagePage& stagePage = stage_.pages[index];
     Loaded& loaded = loaded_[index - firstLoaded_];
     const SourcePage& page = *loaded.page;
     loaded.targets = stayingTargets(stage_, stagePage, page);
-    if (stagePage.fresh || stagePage.record.morphBytes == 0) return {};
-    CHECK(oldTargets_.has_value());
     std::vector<const SpaceCell*> cells;
     for (const SpaceCell& cell : stage_.cells) {
         if (cell.meets(stagePage.low, stagePage.high)) cells.push_back(&cell);
     }
-    const auto isDecided = [&](const CellPoint& p) {
-        return std::ranges::any_of(cells, [&](const SpaceCell* cell) { return cell->contains(p); });
-    };
-    ASSIGN_OR_RETURN(const PageTargets before, oldTargets_->of(stagePage, page));
-    for (std::size_t v = 0; v < page.positions.size(); ++v) {
-        if (isDecided(page.positions[v])) continue;
-        loaded.targets.positions[v] = before.positions[v];
-        loaded.targets.errors[v] = before.errors[v];
-        if (!before.colors.empty()) loaded.targets.colors[v] = before.colors[v];
-        if (!before.normals.empty()) loaded.targets.normals[v] = before.normals[v];
+    std::vector<bool> decided;
+    for (const CellPoint& p : page.positions) {
+        decided.push_back(
+            std::ranges::any_of(cells, [&](const SpaceCell* cell) { return cell->contains(p); }));
     }
-    return {};
+    if (std::ranges::find(decided, false) == decided.end()) return {};
+    CHECK(oldTargets_.has_value());
+    return oldTargets_->set(
+        stage_, stagePage, page, [&](std::size_t v) { return !decided[v]; }, loaded.targets);
 }
 
 // The morph block to the file, and its targets into the boxes of nodes.

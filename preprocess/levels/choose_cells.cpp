@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "preprocess/levels/entry_triangles.hpp"
+#include "preprocess/levels/old_targets.hpp"
+
 namespace iwalk {
 namespace {
 
@@ -39,24 +42,38 @@ struct Choice {
     bool chosen;
 };
 
-// Chooses the cells that vertices of the page lie in.
-void choose(const StagePage& page, const SourcePage& source, std::vector<Choice>& choices) {
+// The vertices of triangles that the owners of a new page did not have before.
+Result<std::vector<bool>> changedVertices(const LevelModel& model, const Stage& stage, const StagePage& page,
+                                          const SourcePage& source, const OldTree& old,
+                                          const PageWriter& writer, PageStore& store) {
+    std::vector<bool> changed(source.positions.size(), false);
+    for (const PageOwner& owner : page.owners) {
+        const LevelRecord* const entry = oldSource(old, model, stage, page, owner);
+        EntryTriangles before;
+        if (entry != nullptr) RETURN_IF_ERROR(before.read(*entry, writer.records(), store));
+        forTriangles(source, owner.firstRange, owner.rangeCount, [&](std::uint32_t i) {
+            if (before.has(source, i)) return;
+            for (const std::uint16_t v : std::span(source.indices).subspan(i, 3)) changed[v] = true;
+        });
+    }
+    return changed;
+}
+
+// Chooses the cells that these vertices of the page lie in.
+void choose(const StagePage& page, const SourcePage& source, const std::vector<bool>& vertices,
+            std::vector<Choice>& choices) {
     for (Choice& choice : choices) {
         if (choice.chosen || !choice.cell.meets(page.low, page.high)) continue;
-        choice.chosen = std::ranges::any_of(source.positions,
-                                            [&](const CellPoint& p) { return choice.cell.contains(p); });
+        for (std::size_t v = 0; v < vertices.size() && !choice.chosen; ++v) {
+            choice.chosen = vertices[v] && choice.cell.contains(source.positions[v]);
+        }
     }
 }
 
 }  // namespace
 
-std::optional<unsigned> oldLevel(const OldTree& old, unsigned level) {
-    if (!old.exists() || level < old.grownBy()) return std::nullopt;
-    return level - old.grownBy();
-}
-
 Result<std::vector<SpaceCell>> chooseCells(const LevelModel& model, const Stage& stage, const OldTree& old,
-                                           PageStore& store) {
+                                           const PageWriter& writer, PageStore& store) {
     const std::optional<unsigned> before = oldLevel(old, stage.level);
     std::vector<LatticeCell> same;
     if (before) same = cellsOf(old.model(), *before);
@@ -69,7 +86,9 @@ Result<std::vector<SpaceCell>> chooseCells(const LevelModel& model, const Stage&
     for (const StagePage& page : stage.pages) {
         if (!page.fresh || !before) continue;
         ASSIGN_OR_RETURN(const std::shared_ptr<const SourcePage> source, store.get(page.number, page.record));
-        choose(page, *source, choices);
+        ASSIGN_OR_RETURN(const std::vector<bool> changed,
+                         changedVertices(model, stage, page, *source, old, writer, store));
+        choose(page, *source, changed, choices);
     }
     std::vector<SpaceCell> cells;
     for (const Choice& choice : choices) {

@@ -9,13 +9,10 @@
 
 namespace iwalk {
 
-// The cells that a pass must decide: those in which a page of the stage is new, and those that the old
+// The cells that a pass must decide: those in which a triangle of the stage is new, and those that the old
 // dataset's pass for the level did not have. In all others vertices can go where they went before, since the
 // vertices at cells' borders stay where they are.
 Result<std::vector<SpaceCell>> chooseCells(const LevelModel& model, const Stage& stage, const OldTree& old,
-                                           PageStore& store);
-
-// The level that the old dataset made where `level` is made now; nullopt: none.
-std::optional<unsigned> oldLevel(const OldTree& old, unsigned level);
+                                           const PageWriter& writer, PageStore& store);
 
 }  // namespace iwalk

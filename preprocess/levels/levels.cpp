@@ -22,7 +22,8 @@ class Pass {
 
     Result<void> run(Progress& progress) {
         progress.phase(fmt::format("making level {}", stage_.level));
-        ASSIGN_OR_RETURN(stage_.cells, chooseCells(tools_.model, stage_, tools_.old, tools_.store));
+        ASSIGN_OR_RETURN(stage_.cells,
+                         chooseCells(tools_.model, stage_, tools_.old, tools_.writer, tools_.store));
         RETURN_IF_ERROR(decide([&](double part) { progress.done(0.7 * part); }));
         RETURN_IF_ERROR(targets_.finish());
         LevelApplier applier(tools_, stage_, targets_);

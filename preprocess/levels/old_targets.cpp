@@ -3,75 +3,47 @@
 #include "preprocess/levels/old_targets.hpp"
 
 #include <algorithm>
-#include <array>
 
-#include "preprocess/levels/numbers.hpp"
+#include "preprocess/levels/entry_triangles.hpp"
 
 namespace iwalk {
 namespace {
 
-using Corners = std::array<CellPoint, 3>;
-
-struct CornersHash {
-    std::size_t operator()(const Corners& c) const {
-        return static_cast<std::size_t>(hashOf(c[0]) ^ 3 * hashOf(c[1]) ^ 7 * hashOf(c[2]));
+// A vertex of an entry.
+struct Vertex {
+    CellPoint position;
+    VertexAttributes attributes;
+    bool operator==(const Vertex&) const = default;
+};
+struct VertexHash {
+    std::size_t operator()(const Vertex& v) const {
+        return static_cast<std::size_t>(
+            hashOf(v.position) ^ mixBits(v.attributes.color | std::uint64_t{v.attributes.normal} << 32));
     }
 };
 
-bool comesBefore(const CellPoint& a, const CellPoint& b) {
-    return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
-}
-
-// Which corner of the triangle comes first, whatever it begins with.
-std::size_t firstOf(const Corners& corners) {
-    return static_cast<std::size_t>(std::ranges::min_element(corners, comesBefore) - corners.begin());
-}
-
-struct Attributes {
-    std::uint32_t color = 0, normal = 0;
-};
-
-// The triangles of an entry: attributes of corners by the places of all three.
-class AttributeTable {
-  public:
-    void add(const SourcePage& page, std::uint32_t firstIndex) {
-        Corners corners;
-        std::array<Attributes, 3> attributes;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const std::uint16_t vertex = page.indices[firstIndex + c];
-            corners[c] = page.positions[vertex];
-            if (!page.colors.empty()) attributes[c].color = page.colors[vertex];
-            if (!page.normals.empty()) attributes[c].normal = page.normals[vertex];
-        }
-        const auto first = static_cast<std::ptrdiff_t>(firstOf(corners));
-        std::rotate(corners.begin(), corners.begin() + first, corners.end());
-        std::rotate(attributes.begin(), attributes.begin() + first, attributes.end());
-        table_.try_emplace(corners, attributes);
-    }
-
-    // Of the corners in their order; nullopt when there is no such triangle.
-    std::optional<std::array<Attributes, 3>> find(Corners corners) const {
-        const auto first = static_cast<std::ptrdiff_t>(firstOf(corners));
-        std::rotate(corners.begin(), corners.begin() + first, corners.end());
-        const auto found = table_.find(corners);
-        if (found == table_.end()) return std::nullopt;
-        std::array<Attributes, 3> attributes = found->second;
-        std::rotate(attributes.begin(), attributes.end() - first, attributes.end());
-        return attributes;
-    }
-
-  private:
-    std::unordered_map<Corners, std::array<Attributes, 3>, CornersHash> table_;
-};
-
-template <class Visit>
-void forTriangles(const SourcePage& page, std::uint32_t firstRange, std::uint32_t count, Visit visit) {
-    for (const Range& range : std::span(page.ranges).subspan(firstRange, count)) {
-        for (std::uint32_t i = range.firstIndex; i < range.firstIndex + range.indexCount; i += 3) visit(i);
-    }
+void copy(const PageTargets& from, std::size_t a, PageTargets& to, std::size_t b) {
+    to.positions[b] = from.positions[a];
+    to.errors[b] = from.errors[a];
+    if (!to.colors.empty()) to.colors[b] = from.colors[a];
+    if (!to.normals.empty()) to.normals[b] = from.normals[a];
 }
 
 }  // namespace
+
+std::optional<unsigned> oldLevel(const OldTree& old, unsigned level) {
+    if (!old.exists() || level < old.grownBy()) return std::nullopt;
+    return level - old.grownBy();
+}
+
+const LevelRecord* oldSource(const OldTree& old, const LevelModel& model, const Stage& stage,
+                             const StagePage& page, const PageOwner& owner) {
+    const std::optional<unsigned> level = oldLevel(old, stage.level);
+    const std::uint32_t node = model.origin[owner.node];
+    if (!level || node == OldTree::kNone) return nullptr;
+    if (!page.held) return changingEntry(old.model(), node, *level);
+    return isHeld(old.model(), node, *level) ? &old.model().entryAt(node, kFullLevel) : nullptr;
+}
 
 OldTargets::OldTargets(const OldTree& old, const LevelModel& model, const PageWriter& writer,
                        PageStore& store, unsigned level)
@@ -84,45 +56,74 @@ OldTargets::OldTargets(const OldTree& old, const LevelModel& model, const PageWr
     }
 }
 
-Result<PageTargets> OldTargets::of(const StagePage& page, const SourcePage& source) const {
-    PageTargets targets{{}, std::vector<float>(source.positions.size(), 0.0f), source.colors, source.normals};
-    ASSIGN_OR_RETURN(targets.positions, store_.targets(page.record, source));
-    for (const PageOwner& owner : page.owners) RETURN_IF_ERROR(addOwner(owner, source, targets));
+Result<void> OldTargets::set(const Stage& stage, const StagePage& page, const SourcePage& source,
+                             const std::function<bool(std::size_t)>& wanted, PageTargets& targets) const {
+    for (const PageOwner& owner : page.owners) {
+        const LevelRecord* const entry = oldSource(old_, model_, stage, page, owner);
+        if (entry == nullptr) continue;
+        const std::uint32_t oldNode = model_.origin[owner.node];
+        Numbers<Vertex, VertexHash> numbers;
+        PageTargets known;  // by number
+        const auto add = [&](std::uint32_t number, const SourcePage& oldPage, std::uint32_t firstRange,
+                             std::uint32_t rangeCount) -> Result<void> {
+            if (!page.fresh && number != page.number) return {};
+            ASSIGN_OR_RETURN(PageTargets went, ofPage(number, oldPage));
+            std::ranges::fill(went.errors, coarserEntry(oldNode).error);
+            RETURN_IF_ERROR(addAttributes(oldNode, oldPage, firstRange, rangeCount, went));
+            forTriangles(oldPage, firstRange, rangeCount, [&](std::uint32_t i) {
+                for (const std::uint16_t v : std::span(oldPage.indices).subspan(i, 3)) {
+                    const auto [place, isNew] = numbers.add({oldPage.positions[v], attributesOf(oldPage, v)});
+                    if (!isNew) continue;
+                    known.positions.push_back(went.positions[v]);
+                    known.errors.push_back(went.errors[v]);
+                    known.colors.push_back(went.colors.empty() ? 0 : went.colors[v]);
+                    known.normals.push_back(went.normals.empty() ? 0 : went.normals[v]);
+                }
+            });
+            return {};
+        };
+        RETURN_IF_ERROR(forPages(*entry, writer_.records(), store_, add));
+        forTriangles(source, owner.firstRange, owner.rangeCount, [&](std::uint32_t i) {
+            for (const std::uint16_t v : std::span(source.indices).subspan(i, 3)) {
+                if (!wanted(v)) continue;
+                const std::uint32_t place = numbers.find({source.positions[v], attributesOf(source, v)});
+                if (place != kNoNumber) copy(known, place, targets, v);
+            }
+        });
+    }
+    return {};
+}
+
+// But for attributes and errors.
+Result<PageTargets> OldTargets::ofPage(std::uint32_t number, const SourcePage& source) const {
+    PageTargets targets{source.positions, std::vector<float>(source.positions.size(), 0.0f), source.colors,
+                        source.normals};
+    const PageRecord& record = writer_.records()[number];
+    if (record.morphBytes > 0) {
+        ASSIGN_OR_RETURN(targets.positions, store_.targets(record, source));
+    }
     return targets;
 }
 
 // That the old node's entry of the next finer level turned into.
-const LevelRecord& OldTargets::coarserEntry(std::uint32_t node) const {
-    const std::vector<LevelRecord>& own = old_.model().entries[node];
+const LevelRecord& OldTargets::coarserEntry(std::uint32_t oldNode) const {
+    const std::vector<LevelRecord>& own = old_.model().entries[oldNode];
     const auto found = std::ranges::find(own, static_cast<std::uint8_t>(level_), &LevelRecord::level);
-    return found != own.end() ? *found : old_.model().entryAt(parents_[node], level_);
+    return found != own.end() ? *found : old_.model().entryAt(parents_[oldNode], level_);
 }
 
-Result<void> OldTargets::addOwner(const PageOwner& owner, const SourcePage& source,
-                                  PageTargets& targets) const {
-    const LevelRecord& coarser = coarserEntry(model_.origin[owner.node]);
-    forTriangles(source, owner.firstRange, owner.rangeCount, [&](std::uint32_t i) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            float& error = targets.errors[source.indices[i + c]];
-            error = std::max(error, coarser.error);
-        }
-    });
+Result<void> OldTargets::addAttributes(std::uint32_t oldNode, const SourcePage& source,
+                                       std::uint32_t firstRange, std::uint32_t rangeCount,
+                                       PageTargets& targets) const {
     if (source.colors.empty() && source.normals.empty()) return {};
-    AttributeTable table;
-    for (std::uint32_t number = coarser.firstPage; number < coarser.firstPage + coarser.pageCount; ++number) {
-        ASSIGN_OR_RETURN(const std::shared_ptr<const SourcePage> page,
-                         store_.get(number, writer_.records()[number]));
-        const bool shared = coarser.pageCount == 1;
-        forTriangles(*page, shared ? coarser.firstRange : 0u,
-                     shared ? coarser.rangeCount : static_cast<std::uint32_t>(page->ranges.size()),
-                     [&](std::uint32_t i) { table.add(*page, i); });
-    }
-    forTriangles(source, owner.firstRange, owner.rangeCount, [&](std::uint32_t i) {
+    EntryTriangles coarser;
+    RETURN_IF_ERROR(coarser.read(coarserEntry(oldNode), writer_.records(), store_));
+    forTriangles(source, firstRange, rangeCount, [&](std::uint32_t i) {
         const std::uint16_t* const corner = &source.indices[i];
-        const auto found = table.find(
-            {targets.positions[corner[0]], targets.positions[corner[1]], targets.positions[corner[2]]});
+        const auto& positions = targets.positions;
+        const auto found = coarser.find({positions[corner[0]], positions[corner[1]], positions[corner[2]]});
         for (std::size_t c = 0; found && c < 3; ++c) {
-            if (targets.positions[corner[c]] == source.positions[corner[c]]) continue;
+            if (positions[corner[c]] == source.positions[corner[c]]) continue;
             if (!source.colors.empty()) targets.colors[corner[c]] = (*found)[c].color;
             if (!source.normals.empty()) targets.normals[corner[c]] = (*found)[c].normal;
         }

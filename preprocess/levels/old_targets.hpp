@@ -1,6 +1,6 @@
 #pragma once
 
-#include <unordered_map>
+#include <functional>
 #include <vector>
 
 #include "preprocess/build/old_tree.hpp"
@@ -10,25 +10,39 @@
 
 namespace iwalk {
 
+// The level that the old dataset made where `level` is made now; nullopt: none.
+std::optional<unsigned> oldLevel(const OldTree& old, unsigned level);
+
+// The old dataset's entry that an owner of a page in the stage had in the place of the one that it has now:
+// the same node's, that took the same way to the level. nullptr: none.
+const LevelRecord* oldSource(const OldTree& old, const LevelModel& model, const Stage& stage,
+                             const StagePage& page, const PageOwner& owner);
+
 // Where the vertices of the old dataset's pages went on the way to one level.
 class OldTargets {
   public:
+    // `level`: of the old dataset.
     OldTargets(const OldTree& old, const LevelModel& model, const PageWriter& writer, PageStore& store,
                unsigned level);
 
-    // Of a page that has a morph block. Its errors are bounds: pages do not say those of single vertices.
-    Result<PageTargets> of(const StagePage& page, const SourcePage& source) const;
+    // Moves those vertices of the page that `wanted` says to where they went, or to where the vertices went
+    // that its nodes' old pages had in their place. Errors are bounds: pages do not say those of single
+    // vertices.
+    Result<void> set(const Stage& stage, const StagePage& page, const SourcePage& source,
+                     const std::function<bool(std::size_t)>& wanted, PageTargets& targets) const;
 
   private:
-    Result<void> addOwner(const PageOwner& owner, const SourcePage& source, PageTargets& targets) const;
-    const LevelRecord& coarserEntry(std::uint32_t node) const;
+    Result<PageTargets> ofPage(std::uint32_t number, const SourcePage& source) const;
+    Result<void> addAttributes(std::uint32_t oldNode, const SourcePage& source, std::uint32_t firstRange,
+                               std::uint32_t rangeCount, PageTargets& targets) const;
+    const LevelRecord& coarserEntry(std::uint32_t oldNode) const;
 
     const OldTree& old_;
     const LevelModel& model_;
     const PageWriter& writer_;
     PageStore& store_;
-    unsigned level_;                      // of the old dataset
-    std::vector<std::uint32_t> parents_;  // of its nodes
+    unsigned level_;
+    std::vector<std::uint32_t> parents_;  // of old nodes
 };
 
 }  // namespace iwalk

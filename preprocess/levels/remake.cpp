@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "preprocess/levels/choose_cells.hpp"
+#include "preprocess/levels/old_targets.hpp"
 
 namespace iwalk {
 namespace {

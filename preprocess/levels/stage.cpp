@@ -28,16 +28,12 @@ class Maker {
         }
         stage_.changing = stage_.pages.size();
         for (const std::uint32_t node : order) {
-            if (isHeld(node)) add(node, model_.entryAt(node, kFullLevel), true);
+            if (isHeld(model_, node, level_)) add(node, model_.entryAt(node, kFullLevel), true);
         }
         return std::move(stage_);
     }
 
   private:
-    bool isHeld(std::uint32_t node) const {
-        return model_.fullAt(node, level_ + 1) && model_.finest[node] < static_cast<int>(level_);
-    }
-
     void add(std::uint32_t node, const LevelRecord& entry, bool held) {
         const bool whole = !model_.isLeaf(node) && entry.level == model_.depth(node);
         for (std::uint32_t number = entry.firstPage; number < entry.firstPage + entry.pageCount; ++number) {
@@ -92,6 +88,10 @@ const LevelRecord* changingEntry(const LevelModel& model, std::uint32_t node, un
     if (model.hasWhole(node, finer) || model.hasOwn(node, finer)) return &model.entryAt(node, finer);
     const bool turns = model.fullAt(node, finer) && model.finest[node] == static_cast<int>(level);
     return turns ? &model.entryAt(node, kFullLevel) : nullptr;
+}
+
+bool isHeld(const LevelModel& model, std::uint32_t node, unsigned level) {
+    return model.fullAt(node, level + 1) && model.finest[node] < static_cast<int>(level);
 }
 
 CollapseLimits limitsAt(unsigned rootCellLog2, unsigned level) {

@@ -50,6 +50,8 @@ Stage makeStage(const LevelModel& model, unsigned level, PageWriter& writer);
 
 // The entry of the node that turns into one of `level`, when its vertices may move on the way; nullptr: none.
 const LevelRecord* changingEntry(const LevelModel& model, std::uint32_t node, unsigned level);
+// Whether the node's own triangles are at full resolution and stay there on the way to `level`.
+bool isHeld(const LevelModel& model, std::uint32_t node, unsigned level);
 CollapseLimits limitsAt(unsigned rootCellLog2, unsigned level);
 
 }  // namespace iwalk
