@@ -131,8 +131,7 @@ Result<void> LevelApplier::findTargets(std::uint32_t index) {
     }
     if (std::ranges::find(decided, false) == decided.end()) return {};
     CHECK(oldTargets_.has_value());
-    return oldTargets_->set(
-        stage_, stagePage, page, [&](std::size_t v) { return !decided[v]; }, loaded.targets);
+    return oldTargets_->set(stage_, stagePage, page, decided, loaded.targets);
 }
 
 // The morph block to the file, and its targets into the boxes of nodes.

@@ -22,14 +22,33 @@ struct VertexHash {
     }
 };
 
-void copy(const PageTargets& from, std::size_t a, PageTargets& to, std::size_t b) {
-    to.positions[b] = from.positions[a];
-    to.errors[b] = from.errors[a];
-    if (!to.colors.empty()) to.colors[b] = from.colors[a];
-    if (!to.normals.empty()) to.normals[b] = from.normals[a];
-}
+// Entries of more pages than this are not compared with what they were: it would take too much memory. All of
+// them counts as new.
+constexpr std::uint32_t kMostPages = 8;
 
 }  // namespace
+
+// Where the vertices of an entry went.
+struct OldTargets::Known {
+    void add(const Vertex& vertex, std::size_t v, const PageTargets& went) {
+        if (!numbers.add(vertex).second) return;
+        targets.positions.push_back(went.positions[v]);
+        targets.errors.push_back(went.errors[v]);
+        if (!went.colors.empty()) targets.colors.push_back(went.colors[v]);
+        if (!went.normals.empty()) targets.normals.push_back(went.normals[v]);
+    }
+    void set(const Vertex& vertex, std::size_t v, PageTargets& to) const {
+        const std::uint32_t number = numbers.find(vertex);
+        CHECK(number != kNoNumber);
+        to.positions[v] = targets.positions[number];
+        to.errors[v] = targets.errors[number];
+        if (!to.colors.empty()) to.colors[v] = targets.colors[number];
+        if (!to.normals.empty()) to.normals[v] = targets.normals[number];
+    }
+
+    Numbers<Vertex, VertexHash> numbers;
+    PageTargets targets;  // by number
+};
 
 std::optional<unsigned> oldLevel(const OldTree& old, unsigned level) {
     if (!old.exists() || level < old.grownBy()) return std::nullopt;
@@ -41,8 +60,14 @@ const LevelRecord* oldSource(const OldTree& old, const LevelModel& model, const 
     const std::optional<unsigned> level = oldLevel(old, stage.level);
     const std::uint32_t node = model.origin[owner.node];
     if (!level || node == OldTree::kNone) return nullptr;
-    if (!page.held) return changingEntry(old.model(), node, *level);
-    return isHeld(old.model(), node, *level) ? &old.model().entryAt(node, kFullLevel) : nullptr;
+    const LevelRecord* entry = nullptr;
+    if (!page.held) {
+        entry = changingEntry(old.model(), node, *level);
+    } else if (isHeld(old.model(), node, *level)) {
+        entry = &old.model().entryAt(node, kFullLevel);
+    }
+    const bool isTooLarge = entry != nullptr && page.fresh && entry->pageCount > kMostPages;
+    return isTooLarge ? nullptr : entry;
 }
 
 OldTargets::OldTargets(const OldTree& old, const LevelModel& model, const PageWriter& writer,
@@ -57,40 +82,41 @@ OldTargets::OldTargets(const OldTree& old, const LevelModel& model, const PageWr
 }
 
 Result<void> OldTargets::set(const Stage& stage, const StagePage& page, const SourcePage& source,
-                             const std::function<bool(std::size_t)>& wanted, PageTargets& targets) const {
+                             const std::vector<bool>& decided, PageTargets& targets) const {
     for (const PageOwner& owner : page.owners) {
         const LevelRecord* const entry = oldSource(old_, model_, stage, page, owner);
-        if (entry == nullptr) continue;
+        if (entry == nullptr) continue;  // then all of it is decided
         const std::uint32_t oldNode = model_.origin[owner.node];
-        Numbers<Vertex, VertexHash> numbers;
-        PageTargets known;  // by number
-        const auto add = [&](std::uint32_t number, const SourcePage& oldPage, std::uint32_t firstRange,
-                             std::uint32_t rangeCount) -> Result<void> {
-            if (!page.fresh && number != page.number) return {};
-            ASSIGN_OR_RETURN(PageTargets went, ofPage(number, oldPage));
-            std::ranges::fill(went.errors, coarserEntry(oldNode).error);
-            RETURN_IF_ERROR(addAttributes(oldNode, oldPage, firstRange, rangeCount, went));
-            forTriangles(oldPage, firstRange, rangeCount, [&](std::uint32_t i) {
-                for (const std::uint16_t v : std::span(oldPage.indices).subspan(i, 3)) {
-                    const auto [place, isNew] = numbers.add({oldPage.positions[v], attributesOf(oldPage, v)});
-                    if (!isNew) continue;
-                    known.positions.push_back(went.positions[v]);
-                    known.errors.push_back(went.errors[v]);
-                    known.colors.push_back(went.colors.empty() ? 0 : went.colors[v]);
-                    known.normals.push_back(went.normals.empty() ? 0 : went.normals[v]);
-                }
-            });
-            return {};
+        Known known;
+        const auto add = [&](std::uint32_t number, const SourcePage& oldPage, std::uint32_t first,
+                             std::uint32_t count) {
+            return addKnown(oldNode, number, oldPage, first, count, known);
         };
-        RETURN_IF_ERROR(forPages(*entry, writer_.records(), store_, add));
+        if (page.fresh) {
+            RETURN_IF_ERROR(forPages(*entry, writer_.records(), store_, add));
+        } else {
+            RETURN_IF_ERROR(add(page.number, source, owner.firstRange, owner.rangeCount));
+        }
         forTriangles(source, owner.firstRange, owner.rangeCount, [&](std::uint32_t i) {
             for (const std::uint16_t v : std::span(source.indices).subspan(i, 3)) {
-                if (!wanted(v)) continue;
-                const std::uint32_t place = numbers.find({source.positions[v], attributesOf(source, v)});
-                if (place != kNoNumber) copy(known, place, targets, v);
+                if (!decided[v]) known.set({source.positions[v], attributesOf(source, v)}, v, targets);
             }
         });
     }
+    return {};
+}
+
+// The vertices of an old page's ranges, and where they went.
+Result<void> OldTargets::addKnown(std::uint32_t oldNode, std::uint32_t number, const SourcePage& page,
+                                  std::uint32_t firstRange, std::uint32_t rangeCount, Known& known) const {
+    ASSIGN_OR_RETURN(PageTargets went, ofPage(number, page));
+    std::ranges::fill(went.errors, coarserEntry(oldNode).error);
+    RETURN_IF_ERROR(addAttributes(oldNode, page, firstRange, rangeCount, went));
+    forTriangles(page, firstRange, rangeCount, [&](std::uint32_t i) {
+        for (const std::uint16_t v : std::span(page.indices).subspan(i, 3)) {
+            known.add({page.positions[v], attributesOf(page, v)}, v, went);
+        }
+    });
     return {};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <vector>
 
 #include "preprocess/build/old_tree.hpp"
@@ -14,7 +14,8 @@ namespace iwalk {
 std::optional<unsigned> oldLevel(const OldTree& old, unsigned level);
 
 // The old dataset's entry that an owner of a page in the stage had in the place of the one that it has now:
-// the same node's, that took the same way to the level. nullptr: none.
+// the same node's, that took the same way to the level. nullptr: none; of what is new also where it is too
+// large to be compared.
 const LevelRecord* oldSource(const OldTree& old, const LevelModel& model, const Stage& stage,
                              const StagePage& page, const PageOwner& owner);
 
@@ -25,13 +26,15 @@ class OldTargets {
     OldTargets(const OldTree& old, const LevelModel& model, const PageWriter& writer, PageStore& store,
                unsigned level);
 
-    // Moves those vertices of the page that `wanted` says to where they went, or to where the vertices went
-    // that its nodes' old pages had in their place. Errors are bounds: pages do not say those of single
-    // vertices.
+    // Moves the page's vertices that are not decided to where they went before, or to where those went that
+    // its nodes' old pages had in their place. Errors are bounds: pages do not say those of single vertices.
     Result<void> set(const Stage& stage, const StagePage& page, const SourcePage& source,
-                     const std::function<bool(std::size_t)>& wanted, PageTargets& targets) const;
+                     const std::vector<bool>& decided, PageTargets& targets) const;
 
   private:
+    struct Known;
+    Result<void> addKnown(std::uint32_t oldNode, std::uint32_t number, const SourcePage& page,
+                          std::uint32_t firstRange, std::uint32_t rangeCount, Known& known) const;
     Result<PageTargets> ofPage(std::uint32_t number, const SourcePage& source) const;
     Result<void> addAttributes(std::uint32_t oldNode, const SourcePage& source, std::uint32_t firstRange,
                                std::uint32_t rangeCount, PageTargets& targets) const;

@@ -1,9 +1,10 @@
 // Datasets that models were inserted into: what must be the same as in a build of all at once is the same,
 // what nothing touches stays, and the levels are as good as any.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <csignal>
 #include <map>
 
 #include "common/dataset/page_files.hpp"
@@ -102,7 +103,11 @@ class InsertTest : public testing::Test {
         ASSERT_TRUE(
             buildFrom(all, path("all"), {.leafTriangles = leafTriangles, .stepExponent = kStep}, parts).ok());
         const Loaded wanted = load(path("all"));
-        EXPECT_EQ(nodesOf(got.hierarchy), nodesOf(wanted.hierarchy));
+        ASSERT_EQ(nodesOf(got.hierarchy), nodesOf(wanted.hierarchy));
+        for (std::size_t n = 0; n < got.hierarchy.nodes.size(); ++n) {
+            EXPECT_TRUE(
+                std::ranges::equal(got.hierarchy.nodes[n].opacity, wanted.hierarchy.nodes[n].opacity));
+        }
         EXPECT_TRUE(readTriangles(path(inserted)) == readTriangles(path("all")));
         EXPECT_EQ(got.manifest.bounds, wanted.manifest.bounds);
         expectGood(inserted);
@@ -307,12 +312,52 @@ TEST_F(InsertTest, CompactKeepsAllButTheGarbage) {
     }
 }
 
+void expectError(const Result<Manifest>& result, const std::string& text) {
+    ASSERT_FALSE(result.ok());
+    EXPECT_NE(result.error().message.find(text), std::string::npos) << result.error().message;
+    EXPECT_EQ(result.error().message.find('\n'), std::string::npos) << result.error().message;
+}
+
+// A limit on file sizes stands in for a full disk.
+TEST_F(InsertTest, FullDisk) {
+    build(makeSoup(5000, 1e-3, 1, 1), "d", 200);
+    const auto files = directory_.list();
+    const auto before = readTriangles(path("d"));
+    FakeInput more = makeSoup(5000, 1e-3, 1, 2);
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit limit{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    for (const rlim_t bytes : {0, 1000, 20'000, 400'000}) {
+        const rlimit small{bytes, limit.rlim_max};
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+        const auto result = insertInto(more, path("d"));
+        NoProgress progress;
+        const auto compacted = compactDataset(path("d"), progress);
+        setrlimit(RLIMIT_FSIZE, &limit);
+        expectError(result, "free some space");
+        EXPECT_EQ(compacted.ok(), bytes == 400'000);
+        const bool unchanged = directory_.list() == files;
+        EXPECT_EQ(unchanged, !compacted.ok()) << bytes;
+    }
+    EXPECT_TRUE(readTriangles(path("d")) == before);
+    more.failAfter = 3000;
+    expectError(insertInto(more, path("d")), "broken");
+    EXPECT_TRUE(readTriangles(path("d")) == before);
+    expectGood("d");
+}
+
+TEST_F(InsertTest, DamageIsFound) {
+    build(makeSoup(5000, 1e-3, 1, 1), "d", 200);
+    std::string bytes = readWholeFile(path("d/pages-1.bin"), 1u << 30).value();
+    for (std::size_t i = 0; i < bytes.size(); i += 500) bytes[i] ^= 1;
+    directory_.write("d/pages-1.bin", bytes);
+    const auto files = directory_.list();
+    expectError(insertInto(makeSoup(500, 1e-3, 1, 2), path("d")),
+                "d/pages-1.bin: page or morph block at byte");
+    EXPECT_EQ(directory_.list(), files);
+}
+
 TEST_F(InsertTest, Refusals) {
-    const auto expectError = [&](const Result<Manifest>& result, const std::string& text) {
-        ASSERT_FALSE(result.ok());
-        EXPECT_NE(result.error().message.find(text), std::string::npos) << result.error().message;
-        EXPECT_EQ(result.error().message.find('\n'), std::string::npos) << result.error().message;
-    };
     const FakeInput soup = makeSoup(300, 0.1, 1, 1);
     expectError(insertInto(soup, path("none")), "dataset.json");
     build(soup, "d", 100);
