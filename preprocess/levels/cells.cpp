@@ -23,8 +23,8 @@ struct Point {
 
 class Cutter {
   public:
-    Cutter(int errorLog2, std::uint64_t mostTriangles, std::uint64_t leastEdge)
-        : most_(mostTriangles), leastEdge_(leastEdge) {
+    Cutter(int errorLog2, const CellSizes& sizes)
+        : most_(sizes.mostTriangles), leastEdge_(sizes.leastEdge), mostEdge_(sizes.mostEdge) {
         for (int axis = 0; axis < 3; ++axis) {
             const int turn = ((errorLog2 + axis) % kTurns + kTurns) % kTurns;
             shift_[axis] =
@@ -60,7 +60,8 @@ class Cutter {
         std::uint64_t triangles = 0;
         for (const Point& point : points) triangles += point.triangles;
         const std::uint64_t half = std::uint64_t{1} << (edgeLog2 - 1);
-        if (triangles <= most_ || half < leastEdge_ || half < 2) return add(low, 2 * half);
+        const bool isSmall = triangles <= most_ && 2 * half <= mostEdge_;
+        if (triangles == 0 || isSmall || half < leastEdge_ || half < 2) return add(low, 2 * half);
         const auto octantOf = [&](const Point& point) {
             const auto upper = [&](int axis) { return point.at[axis] - low[axis] >= half ? 1u : 0u; };
             return upper(0) | upper(1) << 1 | upper(2) << 2;
@@ -87,7 +88,7 @@ class Cutter {
             {LatticePoint(low - CellPoint(shift_)), LatticePoint(low + edge - CellPoint(shift_))});
     }
 
-    std::uint64_t most_, leastEdge_;
+    std::uint64_t most_, leastEdge_, mostEdge_;
     LatticePoint shift_{0, 0, 0};
     std::vector<Point> points_;
     std::vector<LatticeCell> cells_;
@@ -95,9 +96,8 @@ class Cutter {
 
 }  // namespace
 
-std::vector<LatticeCell> cutCells(std::span<const Weight> weights, int errorLog2, std::uint64_t mostTriangles,
-                                  std::uint64_t leastEdge) {
-    Cutter cutter(errorLog2, mostTriangles, leastEdge);
+std::vector<LatticeCell> cutCells(std::span<const Weight> weights, int errorLog2, const CellSizes& sizes) {
+    Cutter cutter(errorLog2, sizes);
     for (const Weight& weight : weights) cutter.spread(weight, 0);
     return cutter.cut();
 }

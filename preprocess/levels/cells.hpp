@@ -40,13 +40,19 @@ struct Weight {
     std::uint64_t triangles = 0;
 };
 
-// Cuts space into cells with about `mostTriangles` triangles or less, not smaller than `leastEdge` steps, by
-// an octree of its own: its planes lie elsewhere for each level, so that what is held at a border of one
-// level is free in the next. Where they lie depends on the level's error alone, 2^errorLog2 steps, and not on
-// the root's cell: when the root grows, cells stay what they were, and more triangles change only those that
-// they lie in. Cells come in Morton order and cover all of the lattice. Depends on the weights alone.
-std::vector<LatticeCell> cutCells(std::span<const Weight> weights, int errorLog2, std::uint64_t mostTriangles,
-                                  std::uint64_t leastEdge);
+// How large cells may be. Edges are in steps.
+struct CellSizes {
+    std::uint64_t mostTriangles;  // about; but for what `leastEdge` forbids to split
+    std::uint64_t leastEdge;
+    std::uint64_t mostEdge;  // of a cell with triangles
+};
+
+// Cuts space into cells by an octree of its own: its planes lie elsewhere for each level, so that what is
+// held at a border of one level is free in the next. Where they lie depends on the level's error alone,
+// 2^errorLog2 steps, and not on the root's cell: when the root grows, cells stay what they were, and more
+// triangles change only those that they lie in. Cells come in Morton order and cover all of the lattice.
+// Depends on the weights alone.
+std::vector<LatticeCell> cutCells(std::span<const Weight> weights, int errorLog2, const CellSizes& sizes);
 
 // What of the cell lies in the root's, outside of which there is nothing.
 std::optional<SpaceCell> inRoot(const LatticeCell& cell, const Lattice& lattice);

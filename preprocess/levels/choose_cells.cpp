@@ -13,6 +13,9 @@ namespace {
 constexpr std::uint64_t kCellTriangles = 65536;
 // Cells are not smaller than this many times the level's error, since vertices near their borders stay.
 constexpr float kLeastCell = 16;
+// Nor larger than this many times, so that an insert does not decide again what is far away. Raised: fewer
+// cells with less at their borders.
+constexpr float kMostCell = 8192;
 
 // Of the pass that made or makes the model's `level`.
 std::vector<LatticeCell> cellsOf(const LevelModel& model, unsigned level) {
@@ -25,8 +28,10 @@ std::vector<LatticeCell> cellsOf(const LevelModel& model, unsigned level) {
         weights.push_back({model.lattice.fromCell(corners[node]), edge, entry->triangles});
     }
     const int errorLog2 = static_cast<int>(model.lattice.rootCellLog2) - static_cast<int>(level);
-    const float leastEdge = kLeastCell * limitsAt(model.lattice.rootCellLog2, level).error;
-    return cutCells(weights, errorLog2, kCellTriangles, static_cast<std::uint64_t>(leastEdge));
+    const float error = limitsAt(model.lattice.rootCellLog2, level).error;
+    const CellSizes sizes{kCellTriangles, static_cast<std::uint64_t>(kLeastCell * error),
+                          static_cast<std::uint64_t>(kMostCell * error)};
+    return cutCells(weights, errorLog2, sizes);
 }
 
 bool comesBefore(const LatticeCell& a, const LatticeCell& b) {

@@ -28,7 +28,9 @@ class CutCellsTest : public testing::Test {
         }
     }
     std::uint64_t below(std::uint64_t end) { return random_() % end; }
-    std::vector<LatticeCell> cut(int errorLog2) const { return cutCells(weights_, errorLog2, 65536, 2000); }
+    std::vector<LatticeCell> cut(int errorLog2) const {
+        return cutCells(weights_, errorLog2, {65536, 2000, ~0ull});
+    }
     std::vector<SpaceCell> inside(std::span<const LatticeCell> cells) const {
         std::vector<SpaceCell> found;
         for (const LatticeCell& cell : cells) {
@@ -60,13 +62,21 @@ TEST_F(CutCellsTest, EveryPointIsInExactlyOne) {
 
 TEST_F(CutCellsTest, AreAsLargeAsAsked) {
     for (const std::uint64_t least : {std::uint64_t{2000}, kEdge / 4}) {
-        for (const LatticeCell& cell : cutCells(weights_, 3, 65536, least)) {
+        for (const LatticeCell& cell : cutCells(weights_, 3, {65536, least, ~0ull})) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 EXPECT_GE(cell.high[axis] - cell.low[axis], static_cast<std::int64_t>(least));
             }
         }
     }
-    EXPECT_GT(inside(cutCells(weights_, 3, 10'000, 2000)).size(), 2 * inside(cut(3)).size());
+    for (const LatticeCell& cell : cutCells(weights_, 3, {~0ull, 1, kEdge / 16})) {
+        const auto isInside = [&](const Weight& weight) {
+            const LatticePoint middle = weight.low + static_cast<std::int64_t>(weight.edge / 2);
+            return LatticeBox{cell.low, cell.high}.contains(LatticeBox{middle, middle});
+        };
+        if (std::ranges::none_of(weights_, isInside)) continue;
+        EXPECT_LE(cell.high.x - cell.low.x, static_cast<std::int64_t>(kEdge / 16));
+    }
+    EXPECT_GT(inside(cutCells(weights_, 3, {10'000, 2000, ~0ull})).size(), 2 * inside(cut(3)).size());
 }
 
 TEST_F(CutCellsTest, DoNotDependOnTheOrderOfWeights) {
@@ -110,9 +120,9 @@ TEST_F(CutCellsTest, ChangesAreLocal) {
 TEST(CutCellsOfLittleTest, OneCellIsEnough) {
     const Lattice lattice{0, LatticePoint(-7), 10};
     const std::vector<Weight> one{{LatticePoint(5), 1, 1}};
-    ASSERT_EQ(cutCells(one, 0, 65536, 16).size(), 1u);
-    ASSERT_EQ(cutCells({}, 0, 1, 1).size(), 1u);
-    const SpaceCell cell = inRoot(cutCells(one, 0, 65536, 16)[0], lattice).value();
+    ASSERT_EQ(cutCells(one, 0, {65536, 16, ~0ull}).size(), 1u);
+    ASSERT_EQ(cutCells({}, 0, {1, 1, ~0ull}).size(), 1u);
+    const SpaceCell cell = inRoot(cutCells(one, 0, {65536, 16, ~0ull})[0], lattice).value();
     EXPECT_EQ(cell.low, CellPoint(0));
     EXPECT_EQ(cell.high, CellPoint(1024));
 }
