@@ -69,13 +69,25 @@ CLI::App* addBuild(CLI::App& app, Arguments& arguments) {
 }
 
 CLI::App* addInsert(CLI::App& app, Arguments& arguments) {
-    CLI::App* command = app.add_subcommand(
-        "insert", "Add models to a dataset, which is made anew from what it has and from them");
+    CLI::App* command = app.add_subcommand("insert",
+                                           "Add models to a dataset, in place: what they do not touch stays "
+                                           "as it is. Colours and normals that the "
+                                           "dataset does not have are dropped");
     command->add_option("dataset", arguments.build.output, "Directory of the dataset")
         ->required()
         ->type_name("DATASET");
     command->add_option("input", arguments.build.inputs, "Models to add")->required()->type_name("INPUT");
     addLimits(command, arguments);
+    return command;
+}
+
+CLI::App* addCompact(CLI::App& app, Arguments& arguments) {
+    CLI::App* command = app.add_subcommand(
+        "compact",
+        "Write a dataset's files anew without what inserts have left in them. Needs disk for all that stays");
+    command->add_option("dataset", arguments.dataset, "Directory of the dataset")
+        ->required()
+        ->type_name("DATASET");
     return command;
 }
 
@@ -127,6 +139,7 @@ int run(int argc, char** argv) {
     Arguments arguments;
     const CLI::App* build = addBuild(app, arguments);
     const CLI::App* insert = addInsert(app, arguments);
+    const CLI::App* compact = addCompact(app, arguments);
     const CLI::App* generate = addGenerate(app, arguments.generate);
     CLI::App* info = addReader(app, arguments, "info", "Say what a dataset has");
     info->add_option("--draw", arguments.picture,
@@ -142,6 +155,7 @@ int run(int argc, char** argv) {
     }
 
     if (generate->parsed()) return report(runGenerate(arguments.generate));
+    if (compact->parsed()) return report(runCompact(arguments.dataset));
     if (info->parsed()) return report(runInfo(arguments.dataset, arguments.json, arguments.picture));
     if (verify->parsed()) return report(runVerify(arguments.dataset, arguments.json));
     const Result<std::uint64_t> memory = parseBytes(arguments.memory);

@@ -9,7 +9,8 @@ class Progress {
   public:
     virtual ~Progress() = default;
     virtual void phase(const std::string& name) = 0;
-    virtual void done(double part) = 0;  // 0..1 of the phase
+    virtual void done(double part) = 0;       // 0..1 of the phase
+    virtual void note(const std::string&) {}  // what a person should know, in one line
 };
 
 }  // namespace iwalk

@@ -25,12 +25,13 @@ std::vector<std::uint64_t> countsOf(const std::vector<Bin>& bins) {
 }  // namespace
 
 Assembler::Assembler(const RecordFormat& format, const Lattice& lattice, AssembleOptions options,
-                     ChunkFile& spill, PageWriter& writer)
+                     ChunkFile& spill, PageWriter& writer, const OldTree& old)
     : format_(format),
       lattice_(lattice),
       options_(std::move(options)),
       spill_(spill),
       writer_(writer),
+      old_(old),
       threads_(tbb::global_control::max_allowed_parallelism, options_.threads),
       arena_(static_cast<int>(options_.threads)),
       packer_(format, options_.leafTriangles) {
@@ -43,7 +44,7 @@ unsigned Assembler::edgeLog2(std::uint32_t node) const {
 
 Result<void> Assembler::run(std::vector<Bin> bins) {
     for (const Bin& bin : bins) allTriangles_ += bin.count;
-    RETURN_IF_ERROR(addGrid(std::move(bins), {Tree::kNone, 0, 0}));
+    RETURN_IF_ERROR(addGrid(std::move(bins), {Tree::kNone, 0, 0, old_.root()}));
     RETURN_IF_ERROR(flush());
     packer_.finish();
     return writePages();
@@ -56,19 +57,52 @@ Result<void> Assembler::writePages() {
     return writer_.write(packer_.take(), entryOf, arena_);
 }
 
+std::uint32_t Assembler::addNode(const GridPlace& place) {
+    const bool isOld = place.old != OldTree::kNone && !old_.isNew(place.old);
+    const std::uint32_t node =
+        tree_.add(place.parent, place.octant, place.depth, isOld ? place.old : Tree::kNone);
+    if (isOld && !old_.isTouched(place.old)) keepOwn(node);
+    return node;
+}
+
+// The node's own triangles stay in their pages.
+void Assembler::keepOwn(std::uint32_t node) {
+    const std::uint32_t origin = tree_.origin(node);
+    const LevelModel& model = old_.model();
+    if (!model.owns(origin)) return;
+    tree_.fullEntry(node) = model.entries[origin].front();
+    tree_.finest(node) = model.finest[origin] + static_cast<int>(old_.grownBy());
+    setOwnBox(tree_[node], Hierarchy::ownBox(model.nodes[origin]));
+}
+
+// A node of the old tree, and all below it.
+void Assembler::keep(const GridPlace& place) {
+    const std::uint32_t node = addNode(place);
+    if (old_.isInterior(place.old)) tree_.setInterior(node);
+    for (std::uint8_t octant = 0; octant < 8; ++octant) {
+        const std::uint32_t child = old_.child(place.old, octant);
+        if (child != OldTree::kNone) keep({node, octant, place.depth + 1, child});
+    }
+}
+
 Result<void> Assembler::addGrid(std::vector<Bin> bins, const GridPlace& place) {
-    const std::vector<PlannedNode> plan = planGrid(countsOf(bins), options_.leafTriangles);
+    const std::vector<PlannedNode> plan = planGrid(countsOf(bins), options_.leafTriangles, old_, place.old);
     std::vector<std::uint32_t> numbers(plan.size(), Tree::kNone);
     for (std::size_t i = 0; i < plan.size(); ++i) {
         const PlannedNode& planned = plan[i];
         const bool isRoot = planned.parent == kNoParent;
         const GridPlace self{isRoot ? place.parent : numbers[planned.parent],
-                             isRoot ? place.octant : planned.octant, place.depth + planned.level};
+                             isRoot ? place.octant : planned.octant, place.depth + planned.level,
+                             planned.old};
         if (planned.kind == PlannedNode::kSubtree) {
             RETURN_IF_ERROR(addSubtree(std::move(bins[planned.firstBin]), self));
             continue;
         }
-        numbers[i] = tree_.add(self.parent, self.octant, self.depth);
+        if (planned.kind == PlannedNode::kKept) {
+            keep(self);
+            continue;
+        }
+        numbers[i] = addNode(self);
         if (planned.kind == PlannedNode::kInterior) tree_.setInterior(numbers[i]);
         std::vector<Bin> own;
         std::uint64_t total = 0;
@@ -85,8 +119,8 @@ Result<void> Assembler::addSubtree(Bin bin, const GridPlace& place) {
     const std::size_t count = static_cast<std::size_t>(bin.count);
     if (count <= options_.batchTriangles) {
         RETURN_IF_ERROR(makeRoom(count));
-        units_.push_back(
-            {true, place.parent, place.octant, place.depth, 0, records_.size() / format_.words(), count});
+        units_.push_back({true, place.parent, place.octant, place.depth, 0, records_.size() / format_.words(),
+                          count, place.old});
         return load(std::move(bin));
     }
     const auto gridBin = [&](const std::uint32_t* record) {
@@ -102,8 +136,8 @@ Result<void> Assembler::addOwn(std::vector<Bin> bins, std::uint32_t node, std::u
         return addTooMany(std::move(bins[0]), node, total, kKeyBits);
     }
     RETURN_IF_ERROR(makeRoom(total));
-    units_.push_back(
-        {false, node, 0, 0, total, records_.size() / format_.words(), static_cast<std::size_t>(total)});
+    units_.push_back({false, node, 0, 0, total, records_.size() / format_.words(),
+                      static_cast<std::size_t>(total), OldTree::kNone});
     for (Bin& bin : bins) RETURN_IF_ERROR(load(std::move(bin)));
     return {};
 }
@@ -131,7 +165,7 @@ Result<void> Assembler::addInPieces(Bin bin, std::uint32_t node, std::uint64_t t
     const std::uint64_t most = options_.batchTriangles;
     RETURN_IF_ERROR(makeRoom(std::min(bin.count, most)));
     const auto held = [&] { return records_.size() / format_.words(); };
-    const auto begin = [&] { units_.push_back({false, node, 0, 0, total, held(), 0}); };
+    const auto begin = [&] { units_.push_back({false, node, 0, 0, total, held(), 0, OldTree::kNone}); };
     begin();
     const std::uint64_t chunk = spill_.chunkBytes() / format_.bytes();
     BinReader reader(spill_, std::move(bin), format_.words());
@@ -216,11 +250,24 @@ std::vector<Subtree> Assembler::growUnits(std::vector<std::uint32_t>& order) {
             const Unit& unit = units_[i];
             if (!unit.subtree) return;
             const std::span<std::uint32_t> own = std::span(order).subspan(unit.first, unit.count);
-            grown[i] =
-                growSubtree(format_, records_.data(), own, unit.depth, unit.octant, options_.leafTriangles);
+            grown[i] = growSubtree(format_, records_.data(), own, unit.depth, unit.octant,
+                                   options_.leafTriangles, old_, unit.old);
         });
     });
     return grown;
+}
+
+// The nodes of a subtree enter the tree. Their numbers there.
+std::vector<std::uint32_t> Assembler::addNodes(const Unit& unit, const Subtree& grown) {
+    std::vector<std::uint32_t> numbers;
+    for (const Subtree::Node& node : grown.nodes) {
+        const std::uint32_t parent = node.parent == kNoParent ? unit.node : numbers[node.parent];
+        const GridPlace place{parent, node.octant, node.depth, node.old};
+        if (node.kept) keep(place);
+        numbers.push_back(node.kept ? Tree::kNone : addNode(place));
+        if (!node.kept && old_.isInterior(node.old)) tree_.setInterior(numbers.back());
+    }
+    return numbers;
 }
 
 // The nodes of the subtrees enter the tree; every node's triangles become a slice, depth first.
@@ -241,11 +288,7 @@ std::vector<Slice> Assembler::makeSlices(const std::vector<Subtree>& grown,
     for (std::size_t i = 0; i < units_.size(); ++i) {
         const Unit& unit = units_[i];
         if (!unit.subtree) add(unit.node, unit.first, unit.count, unit.total);
-        std::vector<std::uint32_t> numbers;
-        for (const Subtree::Node& node : grown[i].nodes) {
-            const std::uint32_t parent = node.parent == kNoParent ? unit.node : numbers[node.parent];
-            numbers.push_back(tree_.add(parent, node.octant, node.depth));
-        }
+        const std::vector<std::uint32_t> numbers = addNodes(unit, grown[i]);
         for (const Subtree::Own& own : grown[i].owned) {
             add(numbers[own.node], unit.first + own.first, own.count, own.count);
         }
@@ -274,7 +317,12 @@ void Assembler::findLevels(std::vector<Slice>& slices) {
         Slice& slice = slices[i];
         const int depth = tree_[slice.node].depth;
         int& finest = tree_.finest(slice.node);
-        if (totals_[i] <= options_.leafTriangles) finest = finestLevel(format_, slice, depth);
+        const std::uint32_t origin = tree_.origin(slice.node);
+        if (origin != Tree::kNone && !old_.hasGrown(origin)) {
+            finest = old_.model().finest[origin] + static_cast<int>(old_.grownBy());
+        } else if (totals_[i] <= options_.leafTriangles) {
+            finest = finestLevel(format_, slice, depth);
+        }
         // Triangles that stay full until they join those below the node move otherwise than those of leaves.
         slice.group = tree_.isInterior(slice.node) && finest < depth ? kJoining : finest;
         slice.leastLevels = static_cast<unsigned>(std::max(finest + 1 - depth, 0)) + kRangeLevels;

@@ -24,11 +24,12 @@ struct AssembleOptions {
 // Turns the bins of the topmost grid into octree and pages, in depth-first order, a batch of triangles in
 // memory at a time. Parts that are too large for a batch are sorted into bins of their own on disk first.
 // What comes out does not depend on the batches' size: nodes follow from counts, and the order in a node from
-// keys and the input's order.
+// keys and the input's order. Nodes of the old tree that nothing touches enter the new one with their
+// entries.
 class Assembler {
   public:
     Assembler(const RecordFormat& format, const Lattice& lattice, AssembleOptions options, ChunkFile& spill,
-              PageWriter& writer);
+              PageWriter& writer, const OldTree& old);
 
     Result<void> run(std::vector<Bin> bins);
     Tree::Records takeTree() { return tree_.finish(); }
@@ -42,14 +43,19 @@ class Assembler {
         unsigned depth;
         std::uint64_t total;  // of the node, in all its units
         std::size_t first, count;
+        std::uint32_t old;  // of a subtree: the node of the old tree that its root is, or OldTree::kNone
     };
     // Where a grid is in the octree.
     struct GridPlace {
         std::uint32_t parent;
         std::uint8_t octant;
         unsigned depth;
+        std::uint32_t old;
     };
 
+    std::uint32_t addNode(const GridPlace& place);
+    void keep(const GridPlace& place);
+    void keepOwn(std::uint32_t node);
     Result<void> addGrid(std::vector<Bin> bins, const GridPlace& place);
     Result<void> addSubtree(Bin bin, const GridPlace& place);
     Result<void> addOwn(std::vector<Bin> bins, std::uint32_t node, std::uint64_t total);
@@ -62,6 +68,7 @@ class Assembler {
     Result<void> load(Bin bin);
     Result<void> flush();
     std::vector<Subtree> growUnits(std::vector<std::uint32_t>& order);
+    std::vector<std::uint32_t> addNodes(const Unit& unit, const Subtree& grown);
     std::vector<Slice> makeSlices(const std::vector<Subtree>& grown, const std::vector<std::uint32_t>& order);
     void findLevels(std::vector<Slice>& slices);
     Result<void> writePages();
@@ -73,6 +80,7 @@ class Assembler {
     AssembleOptions options_;
     ChunkFile& spill_;
     PageWriter& writer_;
+    const OldTree& old_;
     tbb::global_control threads_;  // more threads than cores, too
     tbb::task_arena arena_;
     Tree tree_;

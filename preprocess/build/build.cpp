@@ -11,10 +11,11 @@
 
 #include "common/dataset/level_summary.hpp"
 #include "preprocess/build/assemble.hpp"
-#include "preprocess/build/dataset_importer.hpp"
 #include "preprocess/build/distribute.hpp"
 #include "preprocess/build/grid.hpp"
+#include "preprocess/build/old_dataset.hpp"
 #include "preprocess/build/output_directory.hpp"
+#include "preprocess/build/page_order.hpp"
 #include "preprocess/build/pipeline.hpp"
 #include "preprocess/build/survey.hpp"
 #include "preprocess/levels/levels.hpp"
@@ -27,19 +28,22 @@ constexpr std::uint32_t kMinLeafTriangles = 16, kMaxLeafTriangles = 65536;
 // sorted.
 constexpr std::size_t kBatchOverheadBytes = 4 + 4 + 2 + 32;
 constexpr std::size_t kTargetChunkBytes = std::size_t{64} << 10;  // of up to 512 bins
+constexpr unsigned kMostRootLog2 = 61;
+constexpr std::size_t kMostOldFiles = 65535;  // page records name files by 16 bits
 
 class Build {
   public:
-    // `before`: what the first input, a dataset, was made of; empty when it is a model like the others.
+    // `old`: the dataset that the inputs go into; nullptr: a new one is made.
     Build(const BuildOptions& options, const Budget& budget, const BuildParts& parts, OutputDirectory& output,
-          Progress& progress, std::vector<Provenance> before = {})
+          Progress& progress, const OldDataset* old)
         : options_(options),
           budget_(budget),
           parts_(parts),
           output_(output),
           progress_(progress),
+          old_(old),
           inputs_(options.inputs, budget, output.temporaryDirectory(), parts.openImporter) {
-        manifest_.provenance = std::move(before);
+        if (old_ != nullptr) manifest_ = old_->manifest;
     }
 
     Result<Manifest> run() {
@@ -64,7 +68,9 @@ class Build {
         Sample sample;
         const auto look = [&](std::span<const glm::dvec3> positions) { sample.add(positions); };
         ASSIGN_OR_RETURN(summaries_, inputs_.scan(look, part()));
+        if (old_ != nullptr) return growRoot();
         ASSIGN_OR_RETURN(lattice_, chooseLattice(summaries_, sample, options_.stepExponent));
+        if (parts_.lattice) lattice_ = *parts_.lattice;
         manifest_.stepExponent = lattice_.stepExponent;
         for (const ImportSummary& input : summaries_) {
             manifest_.colors = manifest_.colors || input.colors;
@@ -73,11 +79,33 @@ class Build {
         return {};
     }
 
+    Result<void> growRoot() {
+        const LatticeBox bounds = boundsOnLattice(summaries_, manifest_.stepExponent);
+        if (bounds.empty()) return fail("the inputs have no vertices: there is nothing to insert");
+        lattice_ = grownRoot(old_->model.lattice, bounds);
+        lattice_.stepExponent = manifest_.stepExponent;
+        if (lattice_.rootCellLog2 > kMostRootLog2) {
+            return fail("the inputs lie too far from what the dataset has: build another dataset of them");
+        }
+        tree_ = OldTree(old_->model, lattice_);
+        for (std::size_t i = 0; i < summaries_.size(); ++i) {
+            const auto noteDropped = [&](bool has, bool stays, const char* what) {
+                if (has && !stays) {
+                    progress_.note(fmt::format("{}: its {} are dropped, as the dataset has none",
+                                               options_.inputs[i], what));
+                }
+            };
+            noteDropped(summaries_[i].colors, manifest_.colors, "colours");
+            noteDropped(summaries_[i].normals, manifest_.normals, "normals");
+        }
+        return {};
+    }
+
     Result<std::vector<Bin>> distribute(const RecordFormat& format, ChunkFile& spill) {
         progress_.phase("reading triangles");
-        Distributor distributor(lattice_, format, manifest_.colors, manifest_.normals, spill);
+        Distributor distributor(lattice_, format, manifest_.colors, manifest_.normals, spill, tree_);
         const auto sink = [&](std::span<const Triangle> triangles) { return distributor.add(triangles); };
-        const bool inserting = !manifest_.provenance.empty();
+        std::uint64_t stored = 0;
         for (std::size_t i = 0; i < options_.inputs.size(); ++i) {
             const auto done = [&](double inInput) {
                 progress_.done((static_cast<double>(i) + inInput) /
@@ -85,15 +113,29 @@ class Build {
             };
             distributor.begin(options_.inputs[i], summaries_[i]);
             ASSIGN_OR_RETURN(const ImportCounts counts, inputs_.triangles(i, sink, done));
-            manifest_.triangles += distributor.stored();
-            if (inserting && i == 0) continue;
+            stored += distributor.stored();
             manifest_.provenance.push_back({std::filesystem::path(options_.inputs[i]).filename().string(),
                                             distributor.stored(), counts.droppedNonFinite,
                                             distributor.degenerate()});
         }
-        if (manifest_.triangles > 0) return distributor.finish();
-        return fail(
-            "the inputs have no triangles of three distinct lattice positions: there is nothing to build");
+        if (stored == 0) {
+            return fail(
+                "the inputs have no triangles of three distinct lattice positions: there is nothing to {}",
+                old_ != nullptr ? "insert" : "build");
+        }
+        manifest_.triangles += stored;
+        if (old_ != nullptr) RETURN_IF_ERROR(readOld(distributor));
+        return distributor.finish();
+    }
+
+    // What the dataset has in nodes that get new triangles, or share a page with one.
+    Result<void> readOld(Distributor& distributor) {
+        progress_.phase("reading the dataset");
+        tree_.touchSharers();
+        ASSIGN_OR_RETURN(const auto store,
+                         PageStore::open(pagePaths(options_.output, old_->manifest), lattice_, 0));
+        const auto add = [&](const TriangleRecord& record) { return distributor.addOld(record); };
+        return readTouched(*old_, tree_, *store, add, part());
     }
 
     Result<void> assemble(const RecordFormat& format, ChunkFile& spill, std::vector<Bin> bins) {
@@ -103,32 +145,40 @@ class Build {
         ASSIGN_OR_RETURN(OutputFile pages, OutputFile::create(output_.temporary(pagesName)));
         const std::uint32_t attributes =
             (manifest_.colors ? kPageColors : 0u) | (manifest_.normals ? kPageNormals : 0u);
-        PageWriter writer(pages, lattice_, format, attributes);
+        const std::size_t files = manifest_.pageFiles.size();
+        if (files > kMostOldFiles) return fail("{}: has {} files: compact it first", options_.output, files);
+        PageWriter writer(pages, static_cast<std::uint16_t>(files), lattice_, format, attributes,
+                          old_ != nullptr ? old_->pages : std::vector<PageRecord>());
         ASSIGN_OR_RETURN(LevelModel model, buildPages(format, spill, std::move(bins), writer));
         setBounds(Hierarchy::box(model.nodes[0]));
         RETURN_IF_ERROR(buildLevels(model, pages.path(), writer));
         RETURN_IF_ERROR(pages.sync());
-        manifest_.pageFiles = {{pagesName, pages.size()}};
-        manifest_.vertices = writer.vertices();
-        return finish(finishModel(std::move(model), writer.takeRecords()));
+        manifest_.pageFiles.push_back({pagesName, pages.size()});
+        Hierarchy hierarchy = finishModel(std::move(model), writer.takeRecords());
+        keepPages(hierarchy, usedPages(hierarchy));
+        keepFiles(manifest_.pageFiles, hierarchy.pages);
+        return finish(hierarchy);
     }
 
     // The octree and the pages of full resolution.
     Result<LevelModel> buildPages(const RecordFormat& format, ChunkFile& spill, std::vector<Bin> bins,
                                   PageWriter& writer) {
-        Assembler assembler(format, lattice_, assembleOptions(format), spill, writer);
+        Assembler assembler(format, lattice_, assembleOptions(format), spill, writer, tree_);
         RETURN_IF_ERROR(assembler.run(std::move(bins)));
-        Tree::Records tree = assembler.takeTree();
-        return startModel(lattice_, std::move(tree.nodes), tree.entries, std::move(tree.finest));
+        return startModel(lattice_, assembler.takeTree(), tree_);
     }
 
     Result<void> buildLevels(LevelModel& model, const std::string& pagesPath, PageWriter& writer) {
         malloc_trim(0);
         const RecordFormat format(lattice_.rootCellLog2, manifest_.colors, manifest_.normals, true);
         ASSIGN_OR_RETURN(ChunkFile spill, ChunkFile::create(output_.temporary("targets"), kTargetChunkBytes));
-        const LevelOptions options{options_.leafTriangles, pagesPath, budget_.batchBytes / 5,
-                                   budget_.threads};
-        return makeLevels(model, format, options, writer, spill, progress_);
+        std::vector<std::string> paths = pagePaths(options_.output, manifest_);
+        paths.push_back(pagesPath);
+        RETURN_IF_ERROR(writer.flush());
+        ASSIGN_OR_RETURN(const auto store,
+                         PageStore::open(std::move(paths), lattice_, budget_.batchBytes / 5));
+        const LevelOptions options{options_.leafTriangles, budget_.threads};
+        return makeLevels(model, format, options, tree_, *store, writer, spill, progress_);
     }
 
     AssembleOptions assembleOptions(const RecordFormat& format) {
@@ -147,6 +197,8 @@ class Build {
         manifest_.leaves = static_cast<std::uint64_t>(
             std::ranges::count(hierarchy.nodes, std::uint8_t{0}, &NodeRecord::childMask));
         manifest_.pages = hierarchy.pages.size();
+        manifest_.vertices = 0;
+        for (const PageRecord& page : hierarchy.pages) manifest_.vertices += page.vertexCount;
         manifest_.leafTriangles = options_.leafTriangles;
         LevelSummaries levels = summariseLevels(hierarchy, lattice_.stepExponent);
         manifest_.levels = std::move(levels.levels);
@@ -168,44 +220,62 @@ class Build {
     const BuildParts& parts_;
     OutputDirectory& output_;
     Progress& progress_;
+    const OldDataset* old_;
     Inputs inputs_;
     std::vector<ImportSummary> summaries_;
     Lattice lattice_;
+    OldTree tree_;
     Manifest manifest_;
 };
+
+Result<void> checkInputs(const BuildOptions& options) {
+    if (options.inputs.empty()) return fail("no inputs: name at least one model");
+    if (options.leafTriangles >= kMinLeafTriangles && options.leafTriangles <= kMaxLeafTriangles) return {};
+    return fail("--leaf-triangles {} is out of range: give {} to {}", options.leafTriangles,
+                kMinLeafTriangles, kMaxLeafTriangles);
+}
+
+// What is inserted is no part of the dataset itself.
+Result<void> checkOutside(const BuildOptions& options) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const fs::path dataset = fs::weakly_canonical(options.output, ignored);
+    for (const std::string& input : options.inputs) {
+        const fs::path path = fs::weakly_canonical(input, ignored);
+        if (std::ranges::mismatch(dataset, path).in1 != dataset.end()) continue;
+        return fail("{}: is the dataset that is inserted into, or lies in it: name models to add", input);
+    }
+    return {};
+}
 
 }  // namespace
 
 Result<Manifest> buildDatasetFrom(const BuildOptions& options, Progress& progress, const BuildParts& parts) {
-    if (options.inputs.empty()) return fail("no inputs: name at least one model");
-    if (options.leafTriangles < kMinLeafTriangles || options.leafTriangles > kMaxLeafTriangles) {
-        return fail("--leaf-triangles {} is out of range: give {} to {}", options.leafTriangles,
-                    kMinLeafTriangles, kMaxLeafTriangles);
-    }
+    RETURN_IF_ERROR(checkInputs(options));
     ASSIGN_OR_RETURN(const Budget budget, makeBudget(options));
     ASSIGN_OR_RETURN(OutputDirectory output, OutputDirectory::open(options.output));
-    return Build(options, budget, parts, output, progress).run();
+    return Build(options, budget, parts, output, progress, nullptr).run();
 }
 
-// The dataset's own triangles are the first input of a new generation on the same lattice.
-Result<Manifest> insertIntoDataset(const BuildOptions& options, Progress& progress) {
-    if (options.inputs.empty()) return fail("no inputs: name at least one model");
-    ASSIGN_OR_RETURN(const Manifest before, loadManifest(options.output));
+Result<Manifest> insertIntoDatasetFrom(const BuildOptions& options, Progress& progress,
+                                       const BuildParts& parts) {
+    RETURN_IF_ERROR(checkOutside(options));
+    RETURN_IF_ERROR(loadManifest(options.output));  // before anything is made in what may be no dataset
     ASSIGN_OR_RETURN(OutputDirectory output, OutputDirectory::open(options.output));
+    ASSIGN_OR_RETURN(const OldDataset old, loadOldDataset(options.output));
     BuildOptions all = options;
-    all.inputs.insert(all.inputs.begin(), options.output);
-    all.stepExponent = before.stepExponent;
-    all.leafTriangles = static_cast<std::uint32_t>(before.leafTriangles);
-    BuildParts parts;
-    parts.openImporter = [&](const std::string& path, const ImportLimits& limits) {
-        return path == options.output ? openDatasetImporter(path) : openImporter(path, limits);
-    };
+    all.leafTriangles = static_cast<std::uint32_t>(std::min<std::uint64_t>(old.manifest.leafTriangles, ~0u));
+    RETURN_IF_ERROR(checkInputs(all));
     ASSIGN_OR_RETURN(const Budget budget, makeBudget(all));
-    return Build(all, budget, parts, output, progress, before.provenance).run();
+    return Build(all, budget, parts, output, progress, &old).run();
 }
 
 Result<Manifest> buildDataset(const BuildOptions& options, Progress& progress) {
     return buildDatasetFrom(options, progress, {});
+}
+
+Result<Manifest> insertIntoDataset(const BuildOptions& options, Progress& progress) {
+    return insertIntoDatasetFrom(options, progress, {});
 }
 
 }  // namespace iwalk

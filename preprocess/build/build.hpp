@@ -29,8 +29,9 @@ struct BuildOptions {
 Result<Manifest> buildDataset(const BuildOptions& options, Progress& progress);
 
 // Adds models to the dataset `options.output`, on its lattice and with its leaf size; the octree's root grows
-// when they lie outside. Killed at any moment, the dataset is as before or complete. The whole dataset is
-// made anew: with temporary files, that takes as much disk and time as building it.
+// when they lie outside. Killed at any moment, the dataset is as before or complete. Nodes that no new
+// triangle touches keep their pages; what the others had stays in the files as garbage, until the dataset is
+// compacted. Colours and normals that the dataset does not have are dropped, which is noted.
 Result<Manifest> insertIntoDataset(const BuildOptions& options, Progress& progress);
 
 }  // namespace iwalk

@@ -29,13 +29,14 @@ std::uint32_t faceNormal(const Triangle& triangle) {
 }  // namespace
 
 Distributor::Distributor(const Lattice& lattice, const RecordFormat& format, bool colors, bool normals,
-                         ChunkFile& file)
+                         ChunkFile& file, OldTree& old)
     : lattice_(lattice),
       format_(format),
       colors_(colors),
       normals_(normals),
       stepsPerUnit_(std::ldexp(1.0, -lattice.stepExponent)),
-      writer_(file, kGridBins, format.words()) {}
+      writer_(file, kGridBins, format.words()),
+      old_(old) {}
 
 void Distributor::begin(const std::string& input, const ImportSummary& summary) {
     input_ = input;
@@ -86,12 +87,25 @@ Result<void> Distributor::add(std::span<const Triangle> triangles) {
             continue;
         }
         setAttributes(triangle, record);
-        const std::size_t bin = binOf(placeOf(a, b, c, lattice_.rootCellLog2), 0, lattice_.rootCellLog2);
-        ASSIGN_OR_RETURN(std::uint32_t* const place, writer_.append(bin));
-        format_.pack(record, place);
+        const TrianglePlace place = placeOf(a, b, c, lattice_.rootCellLog2);
+        RETURN_IF_ERROR(store(record, place));
+        LatticeBox box;
+        for (const CellPoint& corner : record.positions) box.add(lattice_.fromCell(corner));
+        old_.touch(place, box);
         ++stored_;
     }
     return {};
+}
+
+Result<void> Distributor::store(const TriangleRecord& record, const TrianglePlace& place) {
+    ASSIGN_OR_RETURN(std::uint32_t* const words, writer_.append(binOf(place, 0, lattice_.rootCellLog2)));
+    format_.pack(record, words);
+    return {};
+}
+
+Result<void> Distributor::addOld(const TriangleRecord& record) {
+    const auto& [a, b, c] = record.positions;
+    return store(record, placeOf(a, b, c, lattice_.rootCellLog2));
 }
 
 }  // namespace iwalk

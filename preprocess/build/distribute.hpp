@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "preprocess/build/old_tree.hpp"
 #include "preprocess/build/record.hpp"
 #include "preprocess/build/spill.hpp"
 #include "preprocess/import/importer.hpp"
@@ -14,12 +15,14 @@ namespace iwalk {
 class Distributor {
   public:
     Distributor(const Lattice& lattice, const RecordFormat& format, bool colors, bool normals,
-                ChunkFile& file);
+                ChunkFile& file, OldTree& old);
 
     // The triangles that follow are of this input: its name for errors, and what it has.
     void begin(const std::string& input, const ImportSummary& summary);
     // Fails when a triangle does not fit the lattice, or the disk is full.
     Result<void> add(std::span<const Triangle> triangles);
+    // A triangle that the dataset has had before.
+    Result<void> addOld(const TriangleRecord& record);
     // Of the input that began last: stored triangles, and those with fewer than three distinct lattice
     // positions.
     std::uint64_t stored() const { return stored_; }
@@ -29,6 +32,7 @@ class Distributor {
 
   private:
     bool quantise(const Triangle& triangle, TriangleRecord& record) const;
+    Result<void> store(const TriangleRecord& record, const TrianglePlace& place);
     Error misfit(const Triangle& triangle) const;
     void setAttributes(const Triangle& triangle, TriangleRecord& record) const;
 
@@ -37,6 +41,7 @@ class Distributor {
     bool colors_, normals_;  // of the dataset
     double stepsPerUnit_;
     BinWriter writer_;
+    OldTree& old_;  // is told of new triangles
     std::string input_;
     ImportSummary summary_;
     std::uint64_t stored_ = 0, degenerate_ = 0;

@@ -27,31 +27,39 @@ constexpr std::array<std::uint16_t, 512> kPlaces = makePlaces();
 
 class Planner {
   public:
-    Planner(std::span<const std::uint64_t> counts, std::uint64_t leafTriangles)
-        : leafTriangles_(leafTriangles) {
+    Planner(std::span<const std::uint64_t> counts, std::uint64_t leafTriangles, const OldTree& tree)
+        : leafTriangles_(leafTriangles), tree_(tree) {
         CHECK_OP(counts.size(), ==, kGridBins);
         before_.push_back(0);
         for (const std::uint64_t count : counts) before_.push_back(before_.back() + count);
     }
 
-    void visit(unsigned level, std::uint8_t octant, std::uint32_t parent, std::size_t bin) {
+    void visit(unsigned level, std::uint8_t octant, std::uint32_t parent, std::size_t bin,
+               std::uint32_t old) {
         const std::uint64_t total = before_[bin + kBinsBelow[level]] - before_[bin];
-        if (total == 0) return;
+        const bool wasSplit = tree_.isInterior(old);
+        const bool isLeaf = total <= leafTriangles_ && !wasSplit;
+        // A leaf that is split now is another node.
+        const std::uint32_t origin = isLeaf || wasSplit ? old : OldTree::kNone;
         const auto add = [&](PlannedNode::Kind kind, std::size_t bins) {
-            plan_.push_back({kind, static_cast<std::uint8_t>(level), octant, parent, bin, bins});
+            plan_.push_back({kind, static_cast<std::uint8_t>(level), octant, parent, bin, bins, origin});
         };
-        if (total <= leafTriangles_) return add(PlannedNode::kLeaf, kBinsBelow[level]);
+        if (total == 0 && old != OldTree::kNone) return add(PlannedNode::kKept, 0);
+        if (total == 0) return;
+        if (isLeaf) return add(PlannedNode::kLeaf, kBinsBelow[level]);
         if (level == kGridLevels) return add(PlannedNode::kSubtree, 1);
         const std::uint32_t self = static_cast<std::uint32_t>(plan_.size());
         add(PlannedNode::kInterior, 1);
         for (std::uint8_t child = 0; child < 8; ++child) {
-            visit(level + 1, child, self, bin + 1 + child * kBinsBelow[level + 1]);
+            visit(level + 1, child, self, bin + 1 + child * kBinsBelow[level + 1],
+                  tree_.child(origin, child));
         }
     }
     std::vector<PlannedNode> take() { return std::move(plan_); }
 
   private:
     std::uint64_t leafTriangles_;
+    const OldTree& tree_;
     std::vector<std::uint64_t> before_;  // triangles in the bins before each
     std::vector<PlannedNode> plan_;
 };
@@ -80,9 +88,10 @@ std::uint64_t sortKey(const TrianglePlace& place, unsigned edgeLog2) {
     return morton(cell) << (kKeyBits - kMortonKeyBits) | place.depth;
 }
 
-std::vector<PlannedNode> planGrid(std::span<const std::uint64_t> binCounts, std::uint64_t leafTriangles) {
-    Planner planner(binCounts, leafTriangles);
-    planner.visit(0, 0, kNoParent, 0);
+std::vector<PlannedNode> planGrid(std::span<const std::uint64_t> binCounts, std::uint64_t leafTriangles,
+                                  const OldTree& tree, std::uint32_t old) {
+    Planner planner(binCounts, leafTriangles, tree);
+    planner.visit(0, 0, kNoParent, 0, old);
     return planner.take();
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "preprocess/build/lattice.hpp"
+#include "preprocess/build/old_tree.hpp"
 
 // Triangles are sorted into the octree three levels at a time, on disk and in memory alike. A grid is a node
 // of the octree and all that is up to three levels below; its bins are these 585 cells in depth-first
@@ -37,16 +38,19 @@ struct PlannedNode {
         kLeaf,      // a leaf with all triangles of its bins
         kInterior,  // a node with the triangles of its one bin; children may follow
         kSubtree,   // at the bottom of the grid and still too much for a leaf: a grid of its own
+        kKept,      // a node of the old tree that nothing touches, with all below it
     };
     Kind kind;
     std::uint8_t level, octant;  // in the grid; in its parent (of a grid's root: 0, unused)
     std::uint32_t parent;        // index in the plan, or kNoParent
     std::size_t firstBin, binCount;
+    std::uint32_t old;  // the node of the old tree that it is, or OldTree::kNone
 };
 inline constexpr std::uint32_t kNoParent = 0xffffffff;
 
 // Splits what has more than `leafTriangles` triangles, in depth-first order, from the counts of the bins
-// alone.
-std::vector<PlannedNode> planGrid(std::span<const std::uint64_t> binCounts, std::uint64_t leafTriangles);
+// alone, and what the old tree splits. `old`: the node of the old tree in the place of the grid's root.
+std::vector<PlannedNode> planGrid(std::span<const std::uint64_t> binCounts, std::uint64_t leafTriangles,
+                                  const OldTree& tree, std::uint32_t old);
 
 }  // namespace iwalk

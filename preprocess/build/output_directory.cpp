@@ -71,6 +71,7 @@ Result<OutputDirectory> OutputDirectory::open(const std::string& path) {
     }
     RETURN_IF_ERROR(directory.inspect());
     RETURN_IF_ERROR(directory.lock());
+    RETURN_IF_ERROR(directory.inspect());  // another may have committed before it gave the lock free
     directory.removeLeftovers(nullptr);
     if (::mkdir(directory.temporaryDirectory().c_str(), 0777) != 0) {
         return fail("{}: cannot make the directory: {}", directory.temporaryDirectory(), reason(errno));
@@ -179,7 +180,9 @@ Result<void> OutputDirectory::moveInto(const std::string& name) {
 
 Result<void> OutputDirectory::commit(const Manifest& manifest) {
     RETURN_IF_ERROR(moveInto(manifest.hierarchy.name));
-    for (const DatasetFile& file : manifest.pageFiles) RETURN_IF_ERROR(moveInto(file.name));
+    for (const DatasetFile& file : manifest.pageFiles) {
+        if (generationOf(file.name) == generation_) RETURN_IF_ERROR(moveInto(file.name));
+    }
     RETURN_IF_ERROR(syncDirectory(path_));
     RETURN_IF_ERROR(saveManifest(path_, manifest));
     committed_ = true;

@@ -22,8 +22,8 @@ class OutputDirectory {
     std::string temporaryDirectory() const;
     std::uint32_t generation() const { return generation_; }  // of the next dataset
 
-    // Moves the files that `manifest` names out of the temporary directory, makes the manifest valid, and
-    // removes the files of older generations. The files were fsynced.
+    // Moves the files of the new generation out of the temporary directory, makes the manifest valid, and
+    // removes the files of older generations that it does not name. The new files were fsynced.
     Result<void> commit(const Manifest& manifest);
 
   private:

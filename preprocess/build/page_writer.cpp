@@ -24,7 +24,7 @@ Result<void> PageWriter::write(std::vector<PageJob> jobs, const EntryOf& entryOf
 
 Result<void> PageWriter::append(BuiltPage& page, const EntryOf& entryOf) {
     page.record.offset = file_.size();
-    page.record.file = 0;
+    page.record.file = fileNumber_;
     RETURN_IF_ERROR(file_.write(page.bytes));
     const std::uint32_t number = static_cast<std::uint32_t>(records_.size());
     for (const NodeRanges& owner : page.nodes) {
@@ -36,7 +36,6 @@ Result<void> PageWriter::append(BuiltPage& page, const EntryOf& entryOf) {
         entry.triangles += owner.triangles;
         entry.vertices += owner.vertices;
     }
-    vertices_ += page.record.vertexCount;
     if (!page.errors.empty()) errors_.emplace(number, std::move(page.errors));
     records_.push_back(page.record);
     return {};
@@ -44,6 +43,7 @@ Result<void> PageWriter::append(BuiltPage& page, const EntryOf& entryOf) {
 
 Result<void> PageWriter::appendMorph(std::uint32_t number, std::span<const std::byte> bytes) {
     records_[number].morphOffset = file_.size();
+    records_[number].morphFile = fileNumber_;
     return file_.write(bytes);
 }
 

@@ -15,14 +15,24 @@ namespace iwalk {
 // Builds pages side by side, and writes them in order.
 class PageWriter {
   public:
-    PageWriter(OutputFile& file, const Lattice& lattice, const RecordFormat& format, std::uint32_t attributes)
-        : file_(file), lattice_(lattice), format_(format), attributes_(attributes) {}
+    // `fileNumber`: the file's place among those that page records name. `old`: the pages of the dataset that
+    // is inserted into; new ones get numbers behind them.
+    PageWriter(OutputFile& file, std::uint16_t fileNumber, const Lattice& lattice, const RecordFormat& format,
+               std::uint32_t attributes, std::vector<PageRecord> old = {})
+        : file_(file),
+          fileNumber_(fileNumber),
+          lattice_(lattice),
+          format_(format),
+          attributes_(attributes),
+          records_(std::move(old)),
+          olds_(records_.size()) {}
 
     // The entry that ranges of a page belong to, which is told so.
     using EntryOf = std::function<LevelRecord&(const NodeRanges&)>;
 
     // Appends the pages.
     Result<void> write(std::vector<PageJob> jobs, const EntryOf& entryOf, tbb::task_arena& arena);
+    bool isNew(std::uint32_t number) const { return number >= olds_; }
     // Appends the morph block of page `number`, whose record has its size.
     Result<void> appendMorph(std::uint32_t number, std::span<const std::byte> bytes);
     // What was written can be read.
@@ -35,18 +45,18 @@ class PageWriter {
     std::vector<PageRecord> takeRecords() { return std::move(records_); }
     // The errors of a page's vertices, once; empty at full resolution.
     std::vector<std::uint8_t> takeErrors(std::uint32_t number);
-    std::uint64_t vertices() const { return vertices_; }
 
   private:
     Result<void> append(BuiltPage& page, const EntryOf& entryOf);
 
     OutputFile& file_;
+    std::uint16_t fileNumber_;
     Lattice lattice_;
     RecordFormat format_;
     std::uint32_t attributes_;
     std::vector<PageRecord> records_;
+    std::size_t olds_;
     std::unordered_map<std::uint32_t, std::vector<std::uint8_t>> errors_;  // by page
-    std::uint64_t vertices_ = 0;
 };
 
 }  // namespace iwalk

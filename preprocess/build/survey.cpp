@@ -69,6 +69,18 @@ void Sample::add(std::span<const glm::dvec3> positions) {
     seen_ += positions.size();
 }
 
+LatticeBox boundsOnLattice(std::span<const ImportSummary> inputs, int stepExponent) {
+    LatticeBox box;
+    for (const ImportSummary& input : inputs) {
+        if (input.bounds.empty()) continue;
+        for (const glm::dvec3& corner : {input.bounds.min, input.bounds.max}) {
+            box.add(LatticePoint(toLattice(corner.x, stepExponent), toLattice(corner.y, stepExponent),
+                                 toLattice(corner.z, stepExponent)));
+        }
+    }
+    return box;
+}
+
 Result<Lattice> chooseLattice(std::span<const ImportSummary> inputs, const Sample& sample,
                               std::optional<int> stepExponent) {
     ModelBox bounds;
@@ -81,13 +93,9 @@ Result<Lattice> chooseLattice(std::span<const ImportSummary> inputs, const Sampl
 
     Lattice lattice;
     lattice.stepExponent = stepExponent ? *stepExponent : chooseStep(inputs, sample, bounds);
-    std::uint64_t longest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        lattice.rootCell[axis] = toLattice(bounds.min[axis], lattice.stepExponent);
-        const std::int64_t top = toLattice(bounds.max[axis], lattice.stepExponent);
-        longest = std::max(longest, static_cast<std::uint64_t>(top - lattice.rootCell[axis]));
-    }
-    lattice.rootCellLog2 = static_cast<unsigned>(std::bit_width(longest));
+    const LatticeBox box = boundsOnLattice(inputs, lattice.stepExponent);
+    lattice.rootCell = box.min;
+    lattice.rootCellLog2 = static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(box.edge())));
     return lattice;
 }
 

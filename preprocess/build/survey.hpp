@@ -21,6 +21,9 @@ class Sample {
     std::uint64_t every_ = 1, seen_ = 0;
 };
 
+// The box of the inputs on a lattice; empty when they have no vertices.
+LatticeBox boundsOnLattice(std::span<const ImportSummary> inputs, int stepExponent);
+
 // The lattice for inputs that were scanned. The step is 2^(ceil(log2 R) - 24), where R is the largest side of
 // the box around the middle 90 % of the sample: 24 bits across the model, and one stray vertex does not make
 // it coarse. It is never finer than the finest input's own precision, rounded up to a power of two: that

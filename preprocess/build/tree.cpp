@@ -22,14 +22,14 @@ void setOwnBox(NodeRecord& node, const LatticeBox& box) {
     }
 }
 
-std::uint32_t Tree::add(std::uint32_t parent, std::uint8_t octant, unsigned depth) {
+std::uint32_t Tree::add(std::uint32_t parent, std::uint8_t octant, unsigned depth, std::uint32_t origin) {
     NodeRecord record{};
     record.depth = static_cast<std::uint8_t>(depth);
     setOwnBox(record, LatticeBox{});
     LevelRecord full{};
     full.level = kFullLevel;
     if (parent != kNone) setInterior(parent);
-    nodes_.push_back({record, parent, octant, full, static_cast<int>(depth) - 1, false});
+    nodes_.push_back({record, parent, origin, octant, full, static_cast<int>(depth) - 1, false});
     return static_cast<std::uint32_t>(nodes_.size() - 1);
 }
 
@@ -70,6 +70,7 @@ Tree::Records Tree::finish() {
         node.firstEntry = static_cast<std::uint32_t>(records.entries.size());
         if (node.entryCount > 0) records.entries.push_back(nodes_[number].full);
         records.finest.push_back(nodes_[number].finest);
+        records.origin.push_back(nodes_[number].origin);
         setBox(node, Hierarchy::ownBox(node));
     }
     // Children come later than their parents, so backwards every box is complete before it is passed on.

@@ -12,7 +12,9 @@ class Tree {
   public:
     static constexpr std::uint32_t kNone = 0xffffffff;
 
-    std::uint32_t add(std::uint32_t parent, std::uint8_t octant, unsigned depth);
+    // `origin`: the node of the dataset that is inserted into that it is, or kNone.
+    std::uint32_t add(std::uint32_t parent, std::uint8_t octant, unsigned depth,
+                      std::uint32_t origin = kNone);
     // Own box of a node; the rest is finish()'s.
     NodeRecord& operator[](std::uint32_t node) { return nodes_[node].record; }
     const NodeRecord& operator[](std::uint32_t node) const { return nodes_[node].record; }
@@ -23,11 +25,13 @@ class Tree {
     // It has children, or is to have some.
     void setInterior(std::uint32_t node) { nodes_[node].interior = true; }
     bool isInterior(std::uint32_t node) const { return nodes_[node].interior; }
+    std::uint32_t origin(std::uint32_t node) const { return nodes_[node].origin; }
 
     struct Records {
         std::vector<NodeRecord> nodes;
-        std::vector<LevelRecord> entries;  // full
-        std::vector<int> finest;           // by node
+        std::vector<LevelRecord> entries;   // full
+        std::vector<int> finest;            // by node
+        std::vector<std::uint32_t> origin;  // by node
     };
     // Puts children in rows behind their parents, entries in the order of their nodes, and computes the boxes
     // of the content. Leaves the tree empty.
@@ -36,7 +40,7 @@ class Tree {
   private:
     struct Growing {
         NodeRecord record;
-        std::uint32_t parent;
+        std::uint32_t parent, origin;
         std::uint8_t octant;
         LevelRecord full;
         int finest;

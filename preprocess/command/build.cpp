@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/settings.hpp"
+#include "preprocess/build/compact.hpp"
 #include "preprocess/command/commands.hpp"
 #include "preprocess/command/progress_bar.hpp"
 
@@ -18,8 +19,7 @@ std::uint64_t peakMemory() {
 }
 
 void printSummary(const Manifest& manifest, double seconds) {
-    std::uint64_t bytes = manifest.hierarchy.bytes;
-    for (const DatasetFile& file : manifest.pageFiles) bytes += file.bytes;
+    const std::uint64_t bytes = bytesOnDisk(manifest);
     const double triangles = static_cast<double>(manifest.triangles);
     fmt::print("{} triangles in {:.1f} s: {:.2f} Mtri/s, {:.2f} bytes/triangle ({}), peak memory {}\n",
                manifest.triangles, seconds, triangles / seconds / 1e6, static_cast<double>(bytes) / triangles,
@@ -58,6 +58,14 @@ Result<void> runBuild(const BuildOptions& options) {
 
 Result<void> runInsert(const BuildOptions& options) {
     return run([&](Progress& progress) { return insertIntoDataset(options, progress); });
+}
+
+Result<void> runCompact(const std::string& dataset) {
+    ASSIGN_OR_RETURN(const Manifest before, loadManifest(dataset));
+    ProgressBar progress;
+    ASSIGN_OR_RETURN(const Manifest after, compactDataset(dataset, progress));
+    fmt::print("{} before, {} now\n", formatBytes(bytesOnDisk(before)), formatBytes(bytesOnDisk(after)));
+    return {};
 }
 
 }  // namespace iwalk

@@ -11,6 +11,7 @@ namespace iwalk {
 
 Result<void> runBuild(const BuildOptions& options);
 Result<void> runInsert(const BuildOptions& options);
+Result<void> runCompact(const std::string& dataset);
 Result<void> runGenerate(const GenerateOptions& options);
 // `picture`: a PNG file to draw the octree into; empty: none.
 Result<void> runInfo(const std::string& dataset, bool json, const std::string& picture);

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "common/settings.hpp"
+#include "preprocess/build/compact.hpp"
 #include "preprocess/command/commands.hpp"
 #include "preprocess/command/summary.hpp"
 
@@ -17,12 +18,6 @@ namespace iwalk {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::uint64_t bytesOnDisk(const Manifest& manifest) {
-    std::uint64_t bytes = manifest.hierarchy.bytes;
-    for (const DatasetFile& file : manifest.pageFiles) bytes += file.bytes;
-    return bytes;
-}
 
 double ratio(std::uint64_t a, std::uint64_t b) {
     return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
@@ -56,6 +51,7 @@ ordered_json toJson(const Manifest& manifest, const Hierarchy& hierarchy, const 
     json["vertices"] = manifest.vertices;
     json["bytes"] = bytesOnDisk(manifest);
     json["bytes_per_triangle"] = ratio(bytesOnDisk(manifest), manifest.triangles);
+    json["garbage_bytes"] = garbageBytes(manifest);
     json["nodes"] = manifest.nodes;
     json["leaves"] = manifest.leaves;
     json["pages"] = manifest.pages;
@@ -123,6 +119,10 @@ void print(const Manifest& manifest, const Hierarchy& hierarchy, const Summary& 
     fmt::print("triangles:  {}\nvertices:   {} in pages\n", manifest.triangles, manifest.vertices);
     fmt::print("size:       {}, {:.2f} bytes/triangle\n", formatBytes(bytesOnDisk(manifest)),
                ratio(bytesOnDisk(manifest), manifest.triangles));
+    if (const std::uint64_t garbage = garbageBytes(manifest); garbage > 0) {
+        fmt::print("garbage:    {} of that, which inserts have left: iwalk-preprocess compact removes it\n",
+                   formatBytes(garbage));
+    }
     fmt::print("attributes: {}{}{}\n", manifest.colors ? "colors " : "", manifest.normals ? "normals" : "",
                manifest.colors || manifest.normals ? "" : "none");
     fmt::print("bounds:     ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) model units\n", low.x, low.y, low.z,

@@ -36,6 +36,11 @@ void ProgressBar::done(double part) {
     if (terminal_ && Clock::now() - drawn_ >= kRedraw) draw(std::clamp(part, 0.0, 1.0));
 }
 
+void ProgressBar::note(const std::string& text) {
+    if (terminal_) fmt::print(stderr, "\r\x1b[K");
+    fmt::print(stderr, "note: {}\n", text);
+}
+
 void ProgressBar::draw(double part) {
     drawn_ = Clock::now();
     const double seconds = secondsSince(began_);

@@ -19,6 +19,7 @@ class ProgressBar : public Progress {
 
     void phase(const std::string& name) override;
     void done(double part) override;
+    void note(const std::string& text) override;
 
   private:
     using Clock = std::chrono::steady_clock;

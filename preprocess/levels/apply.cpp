@@ -9,6 +9,7 @@
 
 #include "common/dataset/morph.hpp"
 #include "preprocess/levels/parallel.hpp"
+#include "preprocess/levels/remake.hpp"
 
 namespace iwalk {
 namespace {
@@ -17,18 +18,23 @@ namespace {
 constexpr std::uint64_t kChunkTriangles = 200'000;
 
 void addBox(NodeRecord& node, bool whole, const LatticeBox& box) {
-    auto& low = whole ? node.boxMin : node.ownMin;
-    auto& high = whole ? node.boxMax : node.ownMax;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], box.min[axis]);
-        high[axis] = std::max(high[axis], box.max[axis]);
-    }
+    if (whole) return extendBox(node.boxMin, node.boxMax, box);
+    extendBox(node.ownMin, node.ownMax, box);
+}
+
+// Whether the page gets a morph block.
+bool isMorphNew(const StagePage& page) {
+    return page.fresh || page.moved;
 }
 
 }  // namespace
 
-LevelApplier::LevelApplier(LevelTools& tools, const Stage& stage, TargetBins& targets)
-    : tools_(tools), stage_(stage), targets_(targets), packer_(tools.format, tools.leafTriangles) {}
+LevelApplier::LevelApplier(LevelTools& tools, Stage& stage, TargetBins& targets)
+    : tools_(tools), stage_(stage), targets_(targets), packer_(tools.format, tools.leafTriangles) {
+    if (const std::optional<unsigned> before = oldLevel(tools.old, stage.level)) {
+        oldTargets_.emplace(tools.old, tools.model, tools.writer, tools.store, *before);
+    }
+}
 
 Result<void> LevelApplier::run(const std::function<void(double)>& done) {
     const std::vector<Job> jobs = planJobs();
@@ -54,11 +60,12 @@ Result<void> LevelApplier::run(const std::function<void(double)>& done) {
     return writePages();
 }
 
-std::vector<LevelApplier::Job> LevelApplier::planJobs() const {
+std::vector<LevelApplier::Job> LevelApplier::planJobs() {
     const LevelModel& model = tools_.model;
+    const std::vector<bool> make = keepEntries(tools_.model, stage_, tools_.old);
     std::vector<Job> jobs;
     for (const std::uint32_t node : model.depthFirst()) {
-        if (!model.hasWhole(node, stage_.level) && !model.hasOwn(node, stage_.level)) continue;
+        if (!make[node]) continue;
         Job job{node, model.sourcesOf(node, stage_.level), std::numeric_limits<std::uint32_t>::max(), 0, 0};
         for (const EntrySource& source : job.sources) {
             job.triangles += source.entry.triangles;
@@ -66,6 +73,8 @@ std::vector<LevelApplier::Job> LevelApplier::planJobs() const {
             const std::uint32_t first = source.entry.firstPage, last = first + source.entry.pageCount - 1;
             job.firstPage = std::min(job.firstPage, stage_.places.at(first));
             job.lastPage = std::max(job.lastPage, stage_.places.at(last));
+            for (std::uint32_t page = first; page <= last; ++page)
+                stage_.pages[stage_.places.at(page)].needed = true;
         }
         jobs.push_back(std::move(job));
     }
@@ -87,22 +96,52 @@ Result<void> LevelApplier::load(std::uint32_t begin, std::uint32_t end) {
     const auto at = [&](std::uint32_t index) -> Loaded& { return loaded_[index - firstLoaded_]; };
     RETURN_IF_ERROR(parallelFor(tools_.arena, begin, end, [&](std::size_t i) -> Result<void> {
         const StagePage& page = stage_.pages[i];
+        if (!isMorphNew(page) && !page.needed) return {};
         ASSIGN_OR_RETURN(at(static_cast<std::uint32_t>(i)).page, tools_.store.get(page.number, page.record));
-        return {};
+        return findTargets(static_cast<std::uint32_t>(i));
     }));
     for (std::uint32_t i = begin; i < end; ++i) {
-        ASSIGN_OR_RETURN(at(i).targets, targets_.take(i, *at(i).page));
+        if (at(i).page) RETURN_IF_ERROR(targets_.take(i, at(i).targets));
     }
     RETURN_IF_ERROR(parallelFor(tools_.arena, begin, end, [&](std::size_t i) -> Result<void> {
-        encodeMorph(static_cast<std::uint32_t>(i));
+        if (isMorphNew(stage_.pages[i])) encodeMorph(static_cast<std::uint32_t>(i));
         return {};
     }));
     for (std::uint32_t i = begin; i < end; ++i) {
-        RETURN_IF_ERROR(tools_.writer.appendMorph(stage_.pages[i].number, std::exchange(at(i).morph, {})));
-        for (std::size_t k = 0; k < at(i).reach.size(); ++k) {
-            const PageOwner& owner = stage_.pages[i].owners[k];
-            addBox(tools_.model.nodes[owner.node], owner.whole, at(i).reach[k]);
-        }
+        if (isMorphNew(stage_.pages[i])) RETURN_IF_ERROR(writeMorph(i));
+    }
+    return {};
+}
+
+// Where the page's vertices go as far as decisions do not say: they stay in cells that were decided, and go
+// where they went before in others.
+Result<void> LevelApplier::findTargets(std::uint32_t index) {
+    const StagePage& stagePage = stage_.pages[index];
+    Loaded& loaded = loaded_[index - firstLoaded_];
+    const SourcePage& page = *loaded.page;
+    loaded.targets = stayingTargets(stage_, stagePage, page);
+    std::vector<const SpaceCell*> cells;
+    for (const SpaceCell& cell : stage_.cells) {
+        if (cell.meets(stagePage.low, stagePage.high)) cells.push_back(&cell);
+    }
+    std::vector<bool> decided;
+    for (const CellPoint& p : page.positions) {
+        decided.push_back(
+            std::ranges::any_of(cells, [&](const SpaceCell* cell) { return cell->contains(p); }));
+    }
+    if (std::ranges::find(decided, false) == decided.end()) return {};
+    CHECK(oldTargets_.has_value());
+    return oldTargets_->set(stage_, stagePage, page, decided, loaded.targets);
+}
+
+// The morph block to the file, and its targets into the boxes of nodes.
+Result<void> LevelApplier::writeMorph(std::uint32_t index) {
+    Loaded& loaded = loaded_[index - firstLoaded_];
+    const StagePage& page = stage_.pages[index];
+    RETURN_IF_ERROR(tools_.writer.appendMorph(page.number, std::exchange(loaded.morph, {})));
+    for (std::size_t i = 0; i < page.owners.size(); ++i) {
+        const PageOwner& owner = page.owners[i];
+        addBox(tools_.model.nodes[owner.node], owner.whole, loaded.reach[i]);
     }
     return {};
 }
@@ -120,6 +159,7 @@ void LevelApplier::encodeMorph(std::uint32_t index) {
     const std::vector<LatticePoint> positions = lattices(page.positions);
     const std::vector<LatticePoint> targets = lattices(loaded.targets.positions);
     PageRecord& record = tools_.writer.record(stage_.pages[index].number);
+    record.flags &= ~std::uint32_t{kMorphWide};  // of the one it may have had
     const MorphSource source{lattice.fromCell(page.origin), positions, targets, page.ranges, page.indices};
     loaded.morph = iwalk::encodeMorph(source, record);
     for (const PageOwner& owner : stage_.pages[index].owners) {

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "preprocess/build/page_writer.hpp"
 #include "preprocess/levels/level_slice.hpp"
 #include "preprocess/levels/model.hpp"
+#include "preprocess/levels/old_targets.hpp"
 #include "preprocess/levels/stage.hpp"
 #include "preprocess/levels/targets.hpp"
 
@@ -21,16 +23,18 @@ struct LevelTools {
     LevelModel& model;
     RecordFormat format;  // of triangles with errors
     std::uint32_t leafTriangles;
+    const OldTree& old;
     PageStore& store;
     PageWriter& writer;
     tbb::task_arena& arena;
 };
 
 // Applies a map of vertices: writes the morph blocks of the stage's pages, and the pages of the next coarser
-// level. Goes over the stage's pages once; those that the nodes under way need are in memory.
+// level; of those that the old dataset has already only what is not the same. Goes over the stage's pages
+// once; those that the nodes under way need are in memory.
 class LevelApplier {
   public:
-    LevelApplier(LevelTools& tools, const Stage& stage, TargetBins& targets);
+    LevelApplier(LevelTools& tools, Stage& stage, TargetBins& targets);
 
     Result<void> run(const std::function<void(double)>& done);
 
@@ -50,18 +54,21 @@ class LevelApplier {
         std::uint64_t triangles;            // of the sources
     };
 
-    std::vector<Job> planJobs() const;
+    std::vector<Job> planJobs();
     Result<void> loadUpTo(std::uint32_t end);
     Result<void> load(std::uint32_t begin, std::uint32_t end);
+    Result<void> findTargets(std::uint32_t index);
     void encodeMorph(std::uint32_t index);
+    Result<void> writeMorph(std::uint32_t index);
     Result<void> makeEntries(std::span<const Job> jobs);
     Result<Slice> makeSlice(const Job& job);
     Result<void> writePages();
     void release(std::uint32_t end);
 
     LevelTools& tools_;
-    const Stage& stage_;
+    Stage& stage_;
     TargetBins& targets_;
+    std::optional<OldTargets> oldTargets_;
     Packer packer_;
     std::deque<Loaded> loaded_;  // stage pages from firstLoaded_ on
     std::uint32_t firstLoaded_ = 0;

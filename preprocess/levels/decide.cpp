@@ -25,19 +25,23 @@ class CellJob {
         }
     }
 
-    Result<void> run(std::span<const std::uint32_t> touching, PageStore& store,
-                     std::vector<VertexTarget>& targets) {
+    Result<CellDecision> run(std::span<const std::uint32_t> touching, PageStore& store) {
         for (const std::uint32_t index : touching) {
             if (!stage_.pages[index].held) RETURN_IF_ERROR(gather(index, store));
         }
-        if (mesh_.triangles.empty()) return {};
+        CellDecision decision;
+        if (mesh_.triangles.empty()) return decision;
         for (const std::uint32_t index : touching) {
             if (stage_.pages[index].held && nearFree(index, touching)) RETURN_IF_ERROR(hold(index, store));
         }
         const std::vector<float> before = mesh_.errors;
         const CollapseMap map = collapse(mesh_, stage_.limits);
-        for (const Gathered& page : gathered_) tell(page, map, before, targets);
-        return {};
+        for (const Gathered& page : gathered_) {
+            tell(page, map, before, decision.targets);
+            ASSIGN_OR_RETURN(const bool moved, hasMoved(page, map, store));
+            if (moved) decision.moved.push_back(page.index);
+        }
+        return decision;
     }
 
   private:
@@ -94,8 +98,8 @@ class CellJob {
         const SourcePage& page = *from.page;
         const auto [point, isNew] = points_.add(page.positions[vertex]);
         const std::vector<std::uint8_t>& errors = stage_.pages[from.index].errors;
-        const float error =
-            errors.empty() ? 0.0f : static_cast<float>(errors[vertex]) * (stage_.errorUnit / 255.0f);
+        const float error = errors.empty() ? stage_.pages[from.index].error
+                                           : static_cast<float>(errors[vertex]) * (stage_.errorUnit / 255.0f);
         if (isNew) {
             const CellPoint& p = page.positions[vertex];
             mesh_.points.emplace_back(relative(p.x, centre_.x), relative(p.y, centre_.y),
@@ -162,6 +166,22 @@ class CellJob {
         }
     }
 
+    // Whether vertices in the cell of a page that is not fresh go elsewhere than its morph block says.
+    Result<bool> hasMoved(const Gathered& from, const CollapseMap& map, PageStore& store) const {
+        const StagePage& source = stage_.pages[from.index];
+        if (source.fresh) return false;
+        const bool isInside = std::ranges::any_of(
+            from.page->positions, [&](const CellPoint& position) { return cell_.contains(position); });
+        if (!isInside || source.record.morphBytes == 0) return isInside;
+        ASSIGN_OR_RETURN(const std::vector<CellPoint> before, store.targets(source.record, *from.page));
+        for (std::size_t v = 0; v < before.size(); ++v) {
+            const std::uint32_t point = from.points[v];
+            if (point == kNoNumber || !cell_.contains(from.page->positions[v])) continue;
+            if (points_[map.points[point]] != before[v]) return true;
+        }
+        return false;
+    }
+
     const SpaceCell& cell_;
     const Stage& stage_;
     CellPoint centre_{0};
@@ -173,9 +193,9 @@ class CellJob {
 
 }  // namespace
 
-Result<void> decideCell(const SpaceCell& cell, const Stage& stage, std::span<const std::uint32_t> touching,
-                        PageStore& store, std::vector<VertexTarget>& targets) {
-    return CellJob(cell, stage).run(touching, store, targets);
+Result<CellDecision> decideCell(const SpaceCell& cell, const Stage& stage,
+                                std::span<const std::uint32_t> touching, PageStore& store) {
+    return CellJob(cell, stage).run(touching, store);
 }
 
 }  // namespace iwalk

@@ -17,10 +17,16 @@ struct VertexTarget {
     CellPoint position{0};
 };
 
-// Decides where the vertices in `cell` go; of a vertex that stays as it is nothing is said. `touching`: the
-// stage pages whose boxes meet the cell. A vertex that triangles with vertices elsewhere use stays: what
-// other cells see of it does not change. So does one that pages held use.
-Result<void> decideCell(const SpaceCell& cell, const Stage& stage, std::span<const std::uint32_t> touching,
-                        PageStore& store, std::vector<VertexTarget>& targets);
+struct CellDecision {
+    std::vector<VertexTarget> targets;  // of a vertex that stays as it is nothing is said
+    std::vector<std::uint32_t>
+        moved;  // stage pages that are not fresh, with vertices that went elsewhere before
+};
+
+// Decides where the vertices in `cell` go. `touching`: the stage pages whose boxes meet the cell. A vertex
+// that triangles with vertices elsewhere use stays: what other cells see of it does not change. So does one
+// that pages held use.
+Result<CellDecision> decideCell(const SpaceCell& cell, const Stage& stage,
+                                std::span<const std::uint32_t> touching, PageStore& store);
 
 }  // namespace iwalk

@@ -6,21 +6,22 @@
 #include "preprocess/build/page_writer.hpp"
 #include "preprocess/build/spill.hpp"
 #include "preprocess/levels/model.hpp"
+#include "preprocess/levels/page_store.hpp"
 
 namespace iwalk {
 
 struct LevelOptions {
     std::uint32_t leafTriangles = 0;
-    std::string pagesPath;       // what the writer writes
-    std::size_t storeBytes = 0;  // pages in memory
     unsigned threads = 1;
 };
 
 // Completes a model whose full resolution is in pages. Leaves get their opacities. Then the levels are made:
 // from the finest that a node has to level 0, each from the one before by one map of vertices. Space is cut
 // into cells that decide for themselves where vertices go, then the map is applied to the pages. Morph blocks
-// and pages go to the writer; nodes get their boxes and entries.
+// and pages go to the writer; nodes get their boxes and entries. What the old dataset has of all this and is
+// not touched stays. `store`: reads its pages and the writer's.
 Result<void> makeLevels(LevelModel& model, const RecordFormat& format, const LevelOptions& options,
-                        PageWriter& writer, ChunkFile& spill, Progress& progress);
+                        const OldTree& old, PageStore& store, PageWriter& writer, ChunkFile& spill,
+                        Progress& progress);
 
 }  // namespace iwalk

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/check.hpp"
+#include "preprocess/build/old_tree.hpp"
 
 namespace iwalk {
 namespace {
@@ -14,6 +15,17 @@ void forChildren(const NodeRecord& node, Visit visit) {
     for (unsigned octant = 0; octant < 8; ++octant) {
         if ((node.childMask >> octant & 1) != 0) visit(child++, octant);
     }
+}
+
+// The finest level of a node's own triangles.
+int finestOf(const Hierarchy& hierarchy, const NodeRecord& node) {
+    const std::span<const LevelRecord> entries = hierarchy.entriesOf(node);
+    const LevelRecord* const full = hierarchy.fullEntryOf(node);
+    if (full == nullptr || entries.size() == 1) return node.depth - 1;
+    const LevelRecord& next = entries[entries.size() - 2];
+    // An interior node's own triangles may be at full resolution in its whole entry: then they do not move.
+    const bool moves = !Hierarchy::isWhole(node, next) || hierarchy.pages[full->firstPage].morphBytes > 0;
+    return moves ? next.level : node.depth - 1;
 }
 
 }  // namespace
@@ -78,14 +90,36 @@ int LevelModel::finestLevel() const {
     return level;
 }
 
-LevelModel startModel(const Lattice& lattice, std::vector<NodeRecord> nodes,
-                      const std::vector<LevelRecord>& full, std::vector<int> finest) {
-    LevelModel model{lattice, std::move(nodes), std::move(finest), {}};
-    for (const NodeRecord& node : model.nodes) {
-        const auto first = full.begin() + node.firstEntry;
-        model.entries.emplace_back(first, first + node.entryCount);
+LevelModel modelOf(const Hierarchy& hierarchy) {
+    LevelModel model{{0, hierarchy.rootCell, hierarchy.rootCellLog2}, hierarchy.nodes, {}, {}, {}};
+    for (const NodeRecord& node : hierarchy.nodes) {
+        const std::span<const LevelRecord> entries = hierarchy.entriesOf(node);
+        model.entries.emplace_back(entries.rbegin(), entries.rend());
+        model.finest.push_back(finestOf(hierarchy, node));
     }
     return model;
+}
+
+LevelModel startModel(const Lattice& lattice, Tree::Records tree, const OldTree& old) {
+    LevelModel model{lattice, std::move(tree.nodes), std::move(tree.finest), {}, std::move(tree.origin)};
+    for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+        NodeRecord& node = model.nodes[n];
+        const auto first = tree.entries.begin() + node.firstEntry;
+        model.entries.emplace_back(first, first + node.entryCount);
+        if (model.origin[n] == Tree::kNone) continue;
+        const NodeRecord& origin = old.model().nodes[model.origin[n]];
+        std::ranges::copy(origin.opacity, node.opacity);
+        // Of what it keeps at coarser levels.
+        if (node.childMask != 0) extendBox(node.boxMin, node.boxMax, Hierarchy::box(origin));
+    }
+    return model;
+}
+
+void extendBox(std::int64_t (&low)[3], std::int64_t (&high)[3], const LatticeBox& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], box.min[axis]);
+        high[axis] = std::max(high[axis], box.max[axis]);
+    }
 }
 
 Hierarchy finishModel(LevelModel model, std::vector<PageRecord> pages) {
@@ -106,10 +140,7 @@ Hierarchy finishModel(LevelModel model, std::vector<PageRecord> pages) {
         box.add(Hierarchy::ownBox(node));
         forChildren(node,
                     [&](std::uint32_t child, unsigned) { box.add(Hierarchy::box(hierarchy.nodes[child])); });
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            node.boxMin[axis] = box.min[axis];
-            node.boxMax[axis] = box.max[axis];
-        }
+        extendBox(node.boxMin, node.boxMax, box);
     }
     return hierarchy;
 }

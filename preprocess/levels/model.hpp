@@ -6,8 +6,11 @@
 
 #include "common/dataset/hierarchy.hpp"
 #include "preprocess/build/record.hpp"
+#include "preprocess/build/tree.hpp"
 
 namespace iwalk {
+
+class OldTree;
 
 // Where triangles of an entry come from: an entry of the next finer level.
 struct EntrySource {
@@ -23,6 +26,8 @@ struct LevelModel {
     std::vector<NodeRecord> nodes;  // breadth first
     std::vector<int> finest;        // by node: finest level of its own triangles, at least depth - 1
     std::vector<std::vector<LevelRecord>> entries;  // by node, full first, then from fine to coarse
+    std::vector<std::uint32_t>
+        origin;  // by node: that of the dataset inserted into that it is, or Tree::kNone
 
     bool owns(std::uint32_t node) const {
         return !entries[node].empty() && entries[node].front().level == kFullLevel;
@@ -53,9 +58,12 @@ struct LevelModel {
     std::vector<CellPoint> cells() const;
 };
 
-// From the octree with full resolution only.
-LevelModel startModel(const Lattice& lattice, std::vector<NodeRecord> nodes,
-                      const std::vector<LevelRecord>& full, std::vector<int> finest);
+// Of a finished dataset.
+LevelModel modelOf(const Hierarchy& hierarchy);
+// From the octree with full resolution only, and what it has taken over from the old one.
+LevelModel startModel(const Lattice& lattice, Tree::Records tree, const OldTree& old);
+// Makes a node's box contain `box`, too.
+void extendBox(std::int64_t (&low)[3], std::int64_t (&high)[3], const LatticeBox& box);
 // Puts entries in order and completes the boxes of nodes; `pages`: those of all entries.
 Hierarchy finishModel(LevelModel model, std::vector<PageRecord> pages);
 

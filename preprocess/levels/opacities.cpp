@@ -94,17 +94,29 @@ class LeafJob {
 
 }  // namespace
 
-Result<void> findOpacities(LevelModel& model, std::span<const PageRecord> records, PageStore& store,
-                           tbb::task_arena& arena, const std::function<void(double)>& done) {
-    std::vector<std::uint32_t> leaves = model.depthFirst();
-    std::erase_if(leaves, [&](std::uint32_t node) { return !model.isLeaf(node); });
+Result<void> findOpacities(LevelModel& model, std::span<const PageRecord> records, const OldTree& old,
+                           PageStore& store, tbb::task_arena& arena,
+                           const std::function<void(double)>& done) {
     const std::vector<CellPoint> cells = model.cells();
+    const auto cellOf = [&](std::uint32_t leaf) {
+        const std::uint64_t edge = std::uint64_t{1} << (model.lattice.rootCellLog2 - model.depth(leaf));
+        return StepBox{cells[leaf], cells[leaf] + edge};
+    };
+    const auto isKnown = [&](std::uint32_t leaf) {
+        if (model.origin[leaf] == Tree::kNone) return false;
+        const StepBox cell = cellOf(leaf);
+        return std::ranges::none_of(old.changes(), [&](const LatticeBox& change) {
+            return cell.meets(CellPoint(change.min - model.lattice.rootCell),
+                              CellPoint(change.max - model.lattice.rootCell));
+        });
+    };
+    std::vector<std::uint32_t> leaves = model.depthFirst();
+    std::erase_if(leaves, [&](std::uint32_t node) { return !model.isLeaf(node) || isKnown(node); });
     std::mutex mutex;
     std::size_t finished = 0;
     return parallelFor(arena, 0, leaves.size(), [&](std::size_t i) -> Result<void> {
         const std::uint32_t leaf = leaves[i];
-        const std::uint64_t edge = std::uint64_t{1} << (model.lattice.rootCellLog2 - model.depth(leaf));
-        const StepBox cell{cells[leaf], cells[leaf] + edge};
+        const StepBox cell = cellOf(leaf);
         ASSIGN_OR_RETURN(const auto coefficients, LeafJob(model, records, store, cell).run());
         std::ranges::copy(coefficients, model.nodes[leaf].opacity);
         const std::lock_guard lock(mutex);

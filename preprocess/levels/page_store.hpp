@@ -32,21 +32,29 @@ struct SourcePage {
 // Pages that were written, read again; the last ones used stay in memory up to a limit. For any thread.
 class PageStore {
   public:
-    PageStore(std::unique_ptr<RandomAccessFile> file, const Lattice& lattice, std::size_t limitBytes)
-        : file_(std::move(file)), lattice_(lattice), limit_(limitBytes) {}
+    // `paths`: of the files that page records name. Pages outside of the lattice's root cell are refused.
+    static Result<std::unique_ptr<PageStore>> open(std::vector<std::string> paths, const Lattice& lattice,
+                                                   std::size_t limitBytes);
 
     // `number` names the page for later calls.
     Result<std::shared_ptr<const SourcePage>> get(std::uint32_t number, const PageRecord& record);
+    // Where the page's vertices go, by its morph block, which it has; steps from the root's cell.
+    Result<std::vector<CellPoint>> targets(const PageRecord& record, const SourcePage& page) const;
 
   private:
+    PageStore(std::vector<std::string> paths, const Lattice& lattice, std::size_t limitBytes)
+        : paths_(std::move(paths)), lattice_(lattice), limit_(limitBytes) {}
     struct Entry {
         std::shared_ptr<const SourcePage> page;
         std::list<std::uint32_t>::iterator used;
     };
+    Error damaged(std::size_t file, std::uint64_t offset, const Error& error) const;
+    bool isInRoot(const std::vector<CellPoint>& points) const;
     Result<SourcePage> read(const PageRecord& record) const;
     void keep(std::uint32_t number, std::shared_ptr<const SourcePage> page);
 
-    std::unique_ptr<RandomAccessFile> file_;
+    std::vector<std::string> paths_;
+    std::vector<std::unique_ptr<RandomAccessFile>> files_;
     Lattice lattice_;
     std::size_t limit_, held_ = 0;
     std::mutex mutex_;

@@ -9,42 +9,27 @@ namespace {
 
 class Maker {
   public:
-    Maker(const LevelModel& model, unsigned level, std::span<const PageRecord> records)
-        : model_(model), level_(level), records_(records), cells_(model.cells()) {
+    Maker(const LevelModel& model, unsigned level, PageWriter& writer)
+        : model_(model), level_(level), writer_(writer) {
         stage_.level = level;
-        const auto limit = [&](unsigned l) {
-            return static_cast<float>(levelErrorSteps(model.lattice.rootCellLog2, l));
-        };
-        stage_.errorUnit = limit(level + 1);
-        stage_.limits.error = limit(level);
-        stage_.limits.longestEdge = kEdgesPerError * limit(level);
+        stage_.limits = limitsAt(model.lattice.rootCellLog2, level);
+        stage_.errorUnit = limitsAt(model.lattice.rootCellLog2, level + 1).error;
     }
 
     Stage run() {
         const std::vector<std::uint32_t> order = model_.depthFirst();
-        for (const std::uint32_t node : order) addChanging(node);
+        for (const std::uint32_t node : order) {
+            const LevelRecord* const entry = changingEntry(model_, node, level_);
+            if (entry != nullptr) add(node, *entry, false);
+        }
         stage_.changing = stage_.pages.size();
         for (const std::uint32_t node : order) {
-            if (isHeld(node)) add(node, model_.entryAt(node, kFullLevel), true);
+            if (isHeld(model_, node, level_)) add(node, model_.entryAt(node, kFullLevel), true);
         }
         return std::move(stage_);
     }
 
   private:
-    bool isHeld(std::uint32_t node) const {
-        return model_.fullAt(node, level_ + 1) && model_.finest[node] < static_cast<int>(level_);
-    }
-
-    // What of the node is in the next finer level and is not held now.
-    void addChanging(std::uint32_t node) {
-        const unsigned finer = level_ + 1;
-        if (model_.hasWhole(node, finer) || model_.hasOwn(node, finer)) {
-            add(node, model_.entryAt(node, finer), false);
-        } else if (model_.fullAt(node, finer) && model_.finest[node] == static_cast<int>(level_)) {
-            add(node, model_.entryAt(node, kFullLevel), false);
-        }
-    }
-
     void add(std::uint32_t node, const LevelRecord& entry, bool held) {
         const bool whole = !model_.isLeaf(node) && entry.level == model_.depth(node);
         for (std::uint32_t number = entry.firstPage; number < entry.firstPage + entry.pageCount; ++number) {
@@ -55,18 +40,19 @@ class Maker {
             CHECK(page.held == held);
             const bool shared = entry.pageCount == 1;
             page.owners.push_back({node, shared ? entry.firstRange : 0u,
-                                   shared ? entry.rangeCount : records_[number].rangeCount, whole});
+                                   shared ? entry.rangeCount : page.record.rangeCount, whole});
+            page.error = std::max(page.error, entry.error);
             addBox(page, whole ? Hierarchy::box(model_.nodes[node]) : Hierarchy::ownBox(model_.nodes[node]));
         }
-        const std::uint64_t edge = std::uint64_t{1} << (model_.lattice.rootCellLog2 - model_.depth(node));
-        if (!held) stage_.weights.push_back({cells_[node], edge, entry.triangles});
     }
 
     void addPage(std::uint32_t number, bool held) {
         StagePage page;
         page.number = number;
-        page.record = records_[number];
+        page.record = writer_.records()[number];
         page.held = held;
+        page.fresh = writer_.isNew(number);
+        page.errors = writer_.takeErrors(number);
         page.low = CellPoint(~std::uint64_t{0});
         stage_.pages.push_back(std::move(page));
     }
@@ -83,15 +69,30 @@ class Maker {
 
     const LevelModel& model_;
     unsigned level_;
-    std::span<const PageRecord> records_;
-    std::vector<CellPoint> cells_;
+    PageWriter& writer_;
     Stage stage_;
 };
 
 }  // namespace
 
-Stage makeStage(const LevelModel& model, unsigned level, std::span<const PageRecord> records) {
-    return Maker(model, level, records).run();
+Stage makeStage(const LevelModel& model, unsigned level, PageWriter& writer) {
+    return Maker(model, level, writer).run();
+}
+
+const LevelRecord* changingEntry(const LevelModel& model, std::uint32_t node, unsigned level) {
+    const unsigned finer = level + 1;
+    if (model.hasWhole(node, finer) || model.hasOwn(node, finer)) return &model.entryAt(node, finer);
+    const bool turns = model.fullAt(node, finer) && model.finest[node] == static_cast<int>(level);
+    return turns ? &model.entryAt(node, kFullLevel) : nullptr;
+}
+
+bool isHeld(const LevelModel& model, std::uint32_t node, unsigned level) {
+    return model.fullAt(node, level + 1) && model.finest[node] < static_cast<int>(level);
+}
+
+CollapseLimits limitsAt(unsigned rootCellLog2, unsigned level) {
+    const float error = static_cast<float>(levelErrorSteps(rootCellLog2, level));
+    return {error, kEdgesPerError * error};
 }
 
 }  // namespace iwalk

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "preprocess/build/page_writer.hpp"
 #include "preprocess/levels/cells.hpp"
 #include "preprocess/levels/collapse.hpp"
 #include "preprocess/levels/model.hpp"
@@ -23,9 +24,13 @@ struct StagePage {
     std::uint32_t number = 0;
     PageRecord record{};
     bool held = false;          // its nodes stay at full resolution, so its vertices stay where they are
+    bool fresh = false;         // not of the dataset that is inserted into
+    bool moved = false;         // of it, but its vertices go elsewhere now
+    bool needed = false;        // an entry is made of it
     CellPoint low{0}, high{0};  // inclusive: contains its vertices
     std::vector<PageOwner> owners;
-    std::vector<std::uint8_t> errors;  // by vertex, in 255ths of the level's error; empty: all 0
+    std::vector<std::uint8_t> errors;  // by vertex, in 255ths of the level's error; empty where not known
+    float error = 0;                   // steps; of all vertices, where `errors` is empty
 };
 
 // What the pass that makes one level works on: the next finer level, M_(level + 1), as it lies in pages.
@@ -35,12 +40,18 @@ struct Stage {
     std::vector<StagePage> pages;
     std::size_t changing = 0;                                 // pages before this place are not held
     std::unordered_map<std::uint32_t, std::uint32_t> places;  // in `pages`, by page number
-    std::vector<Weight> weights;                              // of what changes
-    float errorUnit = 0;                                      // steps; what StagePage::errors are parts of
+    std::vector<SpaceCell> cells;  // that are decided; elsewhere vertices go where they went before
+    float errorUnit = 0;           // steps; what StagePage::errors are parts of
     CollapseLimits limits{};
 };
 
-// `records`: of the pages so far.
-Stage makeStage(const LevelModel& model, unsigned level, std::span<const PageRecord> records);
+// But for its cells. `writer`: of the pages so far; gives up what it knows of vertices' errors.
+Stage makeStage(const LevelModel& model, unsigned level, PageWriter& writer);
+
+// The entry of the node that turns into one of `level`, when its vertices may move on the way; nullptr: none.
+const LevelRecord* changingEntry(const LevelModel& model, std::uint32_t node, unsigned level);
+// Whether the node's own triangles are at full resolution and stay there on the way to `level`.
+bool isHeld(const LevelModel& model, std::uint32_t node, unsigned level);
+CollapseLimits limitsAt(unsigned rootCellLog2, unsigned level);
 
 }  // namespace iwalk

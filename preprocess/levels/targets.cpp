@@ -73,22 +73,25 @@ Result<void> TargetBins::load(std::size_t bin) {
     return {};
 }
 
-Result<PageTargets> TargetBins::take(std::uint32_t index, const SourcePage& page) {
+Result<void> TargetBins::take(std::uint32_t index, PageTargets& targets) {
     if (binOf_[index] != loaded_) RETURN_IF_ERROR(load(binOf_[index]));
-    const std::vector<std::uint8_t>& errors = stage_.pages[index].errors;
-    PageTargets result{page.positions, std::vector<float>(page.positions.size(), 0.0f), page.colors,
-                       page.normals};
-    for (std::size_t v = 0; v < errors.size(); ++v) {
-        result.errors[v] = static_cast<float>(errors[v]) * (stage_.errorUnit / 255.0f);
-    }
     const auto own = std::ranges::equal_range(targets_, index, {}, &VertexTarget::stagePage);
     for (const VertexTarget& target : own) {
-        result.positions[target.vertex] = target.position;
-        result.errors[target.vertex] = target.error;
-        if (!page.colors.empty()) result.colors[target.vertex] = target.color;
-        if (!page.normals.empty()) result.normals[target.vertex] = target.normal;
+        targets.positions[target.vertex] = target.position;
+        targets.errors[target.vertex] = target.error;
+        if (!targets.colors.empty()) targets.colors[target.vertex] = target.color;
+        if (!targets.normals.empty()) targets.normals[target.vertex] = target.normal;
     }
-    return result;
+    return {};
+}
+
+PageTargets stayingTargets(const Stage& stage, const StagePage& page, const SourcePage& source) {
+    PageTargets targets{source.positions, std::vector<float>(source.positions.size(), page.error),
+                        source.colors, source.normals};
+    for (std::size_t v = 0; v < page.errors.size(); ++v) {
+        targets.errors[v] = static_cast<float>(page.errors[v]) * (stage.errorUnit / 255.0f);
+    }
+    return targets;
 }
 
 }  // namespace iwalk

@@ -16,6 +16,9 @@ struct PageTargets {
     std::vector<std::uint32_t> colors, normals;  // as the page has them
 };
 
+// All vertices stay where they are.
+PageTargets stayingTargets(const Stage& stage, const StagePage& page, const SourcePage& source);
+
 // The targets that cells decide upon, sorted by pages in a spill file. Pages are read again in order.
 class TargetBins {
   public:
@@ -24,9 +27,8 @@ class TargetBins {
     Result<void> add(std::span<const VertexTarget> targets);  // one thread at a time
     // All are added.
     Result<void> finish();
-    // Targets of stage page `index`: those that were added, the vertices' own places for others. Each page
-    // once, in order of the index.
-    Result<PageTargets> take(std::uint32_t index, const SourcePage& page);
+    // Sets those of stage page `index` that were added. Each page once, in order of the index.
+    Result<void> take(std::uint32_t index, PageTargets& targets);
 
   private:
     static constexpr std::size_t kWords = sizeof(VertexTarget) / 4;

@@ -24,19 +24,29 @@ class CutCellsTest : public testing::Test {
             const std::uint64_t edge = std::uint64_t{1} << edgeLog2;
             const CellPoint low(below(kEdge >> edgeLog2), below(kEdge >> edgeLog2) / 4,
                                 below(kEdge >> edgeLog2));
-            weights_.push_back({low * edge, edge, 1 + below(20'000)});
+            weights_.push_back({lattice_.fromCell(low * edge), edge, 1 + below(20'000)});
         }
     }
     std::uint64_t below(std::uint64_t end) { return random_() % end; }
-    std::vector<SpaceCell> cut(unsigned level) const { return cutCells(weights_, kRoot, level, 65536, 2000); }
+    std::vector<LatticeCell> cut(int errorLog2) const {
+        return cutCells(weights_, errorLog2, {65536, 2000, ~0ull});
+    }
+    std::vector<SpaceCell> inside(std::span<const LatticeCell> cells) const {
+        std::vector<SpaceCell> found;
+        for (const LatticeCell& cell : cells) {
+            if (const auto part = inRoot(cell, lattice_)) found.push_back(*part);
+        }
+        return found;
+    }
 
     std::mt19937_64 random_{1};
+    const Lattice lattice_{0, LatticePoint(-300'000, 5, 1'000'000), kRoot};
     std::vector<Weight> weights_;
 };
 
 TEST_F(CutCellsTest, EveryPointIsInExactlyOne) {
-    for (const unsigned level : {0u, 1u, 7u}) {
-        const std::vector<SpaceCell> cells = cut(level);
+    for (const int errorLog2 : {-3, 0, 13}) {
+        const std::vector<SpaceCell> cells = inside(cut(errorLog2));
         EXPECT_GT(cells.size(), 20u);
         for (int i = 0; i < 5000; ++i) {
             CellPoint p(below(kEdge), below(kEdge), below(kEdge));
@@ -52,46 +62,69 @@ TEST_F(CutCellsTest, EveryPointIsInExactlyOne) {
 
 TEST_F(CutCellsTest, AreAsLargeAsAsked) {
     for (const std::uint64_t least : {std::uint64_t{2000}, kEdge / 4}) {
-        for (const SpaceCell& cell : cutCells(weights_, kRoot, 3, 65536, least)) {
+        for (const LatticeCell& cell : cutCells(weights_, 3, {65536, least, ~0ull})) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                EXPECT_LT(cell.low[axis], cell.high[axis]);
-                EXPECT_TRUE(cell.low[axis] == 0 || cell.high[axis] - cell.low[axis] >= least);
+                EXPECT_GE(cell.high[axis] - cell.low[axis], static_cast<std::int64_t>(least));
             }
         }
     }
-    EXPECT_GT(cutCells(weights_, kRoot, 3, 10'000, 2000).size(), 2 * cut(3).size());
-}
-
-bool sameCell(const SpaceCell& a, const SpaceCell& b) {
-    return a.low == b.low && a.high == b.high;
+    for (const LatticeCell& cell : cutCells(weights_, 3, {~0ull, 1, kEdge / 16})) {
+        const auto isInside = [&](const Weight& weight) {
+            const LatticePoint middle = weight.low + static_cast<std::int64_t>(weight.edge / 2);
+            return LatticeBox{cell.low, cell.high}.contains(LatticeBox{middle, middle});
+        };
+        if (std::ranges::none_of(weights_, isInside)) continue;
+        EXPECT_LE(cell.high.x - cell.low.x, static_cast<std::int64_t>(kEdge / 16));
+    }
+    EXPECT_GT(inside(cutCells(weights_, 3, {10'000, 2000, ~0ull})).size(), 2 * inside(cut(3)).size());
 }
 
 TEST_F(CutCellsTest, DoNotDependOnTheOrderOfWeights) {
-    const std::vector<SpaceCell> before = cut(2);
+    const std::vector<LatticeCell> before = cut(2);
     std::ranges::shuffle(weights_, random_);
-    EXPECT_TRUE(std::ranges::equal(before, cut(2), sameCell));
+    EXPECT_TRUE(before == cut(2));
 }
 
-// What is held at a border of one level is free in the next.
-TEST_F(CutCellsTest, LevelsShareNoPlanes) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::vector<std::uint64_t> planes;
-        for (const SpaceCell& cell : cut(4)) planes.push_back(cell.low[axis]);
-        for (const SpaceCell& cell : cut(5)) {
-            if (cell.low[axis] == 0) continue;  // the end of everything
-            EXPECT_EQ(std::ranges::count(planes, cell.low[axis]), 0);
+// What is held at a border of one level is free in the next two.
+TEST_F(CutCellsTest, PlanesOfNeighbouringLevelsLieApart) {
+    for (const int other : {5, 6}) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (const LatticeCell& a : cut(4)) {
+                for (const LatticeCell& b : cut(other)) {
+                    const std::int64_t edge = std::min(a.high.x - a.low.x, b.high.x - b.low.x);
+                    ASSERT_GE(std::abs(a.low[axis] - b.low[axis]), edge / 6);
+                }
+            }
         }
     }
 }
 
-TEST(CutCellsOfLittleTest, OneCellIsEnough) {
-    const std::vector<Weight> one{{CellPoint(5), 1, 1}};
-    for (const SpaceCell& cell : cutCells(one, kRoot, 0, 65536, 16)) {
-        EXPECT_TRUE(cell.contains(CellPoint(5)));
-        EXPECT_TRUE(cell.contains(CellPoint(kEdge - 1)));
+// More triangles split cells that they lie in, and change no others.
+TEST_F(CutCellsTest, ChangesAreLocal) {
+    const std::vector<LatticeCell> before = cut(7);
+    const Weight more{lattice_.fromCell(CellPoint(kEdge / 2)), 1024, 90'000};
+    weights_.push_back(more);
+    const std::vector<LatticeCell> after = cut(7);
+    std::size_t gone = 0;
+    for (const LatticeCell& cell : before) {
+        if (std::ranges::count(after, cell) == 1) continue;
+        ++gone;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            EXPECT_LT(cell.low[axis], more.low[axis] + 1024);
+            EXPECT_GT(cell.high[axis], more.low[axis]);
+        }
     }
-    EXPECT_EQ(cutCells(one, kRoot, 0, 65536, 16).size(), 1u);
-    EXPECT_EQ(cutCells({}, 1, 0, 1, 1).size(), 1u);
+    EXPECT_GE(gone, 1u);
+}
+
+TEST(CutCellsOfLittleTest, OneCellIsEnough) {
+    const Lattice lattice{0, LatticePoint(-7), 10};
+    const std::vector<Weight> one{{LatticePoint(5), 1, 1}};
+    ASSERT_EQ(cutCells(one, 0, {65536, 16, ~0ull}).size(), 1u);
+    ASSERT_EQ(cutCells({}, 0, {1, 1, ~0ull}).size(), 1u);
+    const SpaceCell cell = inRoot(cutCells(one, 0, {65536, 16, ~0ull})[0], lattice).value();
+    EXPECT_EQ(cell.low, CellPoint(0));
+    EXPECT_EQ(cell.high, CellPoint(1024));
 }
 
 class JoinRangesTest : public testing::Test {

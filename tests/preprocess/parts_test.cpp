@@ -44,7 +44,7 @@ TEST(GridTest, PlanSplitsWhatIsTooMuch) {
     counts[1] = 5;  // first child: 5 + 6
     counts[4] = 6;
     counts[584] = 20;  // in the last corner
-    const auto plan = planGrid(counts, 11);
+    const auto plan = planGrid(counts, 11, OldTree(), OldTree::kNone);
     ASSERT_EQ(plan.size(), 5u);
     EXPECT_EQ(plan[0].kind, PlannedNode::kInterior);
     EXPECT_EQ(plan[1].kind, PlannedNode::kLeaf);
@@ -53,7 +53,7 @@ TEST(GridTest, PlanSplitsWhatIsTooMuch) {
     EXPECT_EQ(plan[3].parent, 2u);
     EXPECT_EQ(plan[4].kind, PlannedNode::kSubtree);
     EXPECT_EQ(plan[4].firstBin, 584u);
-    EXPECT_EQ(planGrid(counts, 34).size(), 1u);
+    EXPECT_EQ(planGrid(counts, 34, OldTree(), OldTree::kNone).size(), 1u);
 }
 
 TEST(OrderTest, RangesEndAtCells) {
@@ -223,7 +223,8 @@ TEST(TreeTest, ChildrenStandInRows) {
         tree.fullEntry(node).triangles = at;
     };
     own(deep, 10), own(two, 5);
-    const auto [nodes, entries, finest] = tree.finish();
+    const auto [nodes, entries, finest, origin] = tree.finish();
+    EXPECT_EQ(origin, std::vector<std::uint32_t>(4, Tree::kNone));
     ASSERT_EQ(nodes.size(), 4u);
     EXPECT_EQ(finest, (std::vector<int>{-1, 0, 0, 1}));
     EXPECT_EQ(nodes[0].childMask, 0b10000100);

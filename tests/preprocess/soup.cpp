@@ -12,7 +12,7 @@
 
 #include "common/dataset/hierarchy.hpp"
 #include "common/dataset/manifest.hpp"
-#include "common/file.hpp"
+#include "common/dataset/page_files.hpp"
 
 namespace iwalk {
 namespace {
@@ -148,14 +148,17 @@ std::vector<StoredTriangle> readTriangles(const std::string& dataset) {
     EXPECT_TRUE(manifest.ok()) << manifest.error().message;
     const auto hierarchy = loadHierarchy(dataset, *manifest);
     EXPECT_TRUE(hierarchy.ok()) << hierarchy.error().message;
-    const auto file = openForReading(dataset + "/" + manifest->pageFiles.at(0).name);
-    EXPECT_TRUE(file.ok());
+    const auto files = openPageFiles(dataset, *manifest);
+    EXPECT_TRUE(files.ok());
     std::set<std::uint32_t> full;  // pages
     for (const LevelRecord& entry : hierarchy->entries) {
         for (std::uint32_t i = 0; entry.level == kFullLevel && i < entry.pageCount; ++i)
             full.insert(entry.firstPage + i);
     }
-    for (const std::uint32_t page : full) appendPage(**file, hierarchy->pages[page], triangles);
+    for (const std::uint32_t page : full) {
+        const PageRecord& record = hierarchy->pages[page];
+        appendPage(*(*files)[record.file], record, triangles);
+    }
     std::ranges::sort(triangles);
     return triangles;
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds that are killed at any moment and builds on a full disk: the dataset that was there stays whole, or the new one
-# is complete; the next build succeeds; nothing temporary is left behind. IWALK_KILLS says how many are killed (default
-# 5); the seed of the moments is printed, and IWALK_SEED repeats them.
+# Builds, inserts and compactions that are killed at any moment, and some on a full disk: the dataset that was there
+# stays whole, or the new one is complete; the next run succeeds; nothing temporary is left behind. IWALK_KILLS says how
+# many of each are killed (default 5); the seed of the moments is printed, and IWALK_SEED repeats them.
 source "$(dirname "$0")/lib.sh"
 preprocess=$bin/iwalk-preprocess
 cd "$work"
@@ -17,11 +17,11 @@ build_old() { "$preprocess" build old.ply -o "$1" --leaf-triangles 200 >/dev/nul
 new=("$preprocess" build new.ply --leaf-triangles 1000 -o)
 triangles_in() { "$preprocess" info "$1" --json | sed -n '0,/"triangles"/s/.*"triangles": *\([0-9]*\).*/\1/p'; }
 
-# is_clean DATASET: exactly the files of one generation.
+# is_clean DATASET: exactly the manifest and the files that it names.
 is_clean() {
-    local generation
-    generation=$(sed -n 's/.*"generation": *\([0-9]*\).*/\1/p' "$1/dataset.json")
-    [ "$(ls -A "$1" | tr '\n' ' ')" = "dataset.json hierarchy-$generation.bin pages-$generation.bin " ]
+    local named
+    named=$({ echo dataset.json; grep -o '[a-z]*-[0-9]*\.bin' "$1/dataset.json"; } | sort | tr '\n' ' ')
+    [ "$(ls -A "$1" | sort | tr '\n' ' ')" = "$named" ]
 }
 # expect_good DATASET TRIANGLES WHEN: verifies, and is the one with so many triangles.
 expect_good() {
@@ -36,7 +36,7 @@ began=$(date +%s%N)
 duration=$(($(date +%s%N) - began))
 old_triangles=$(triangles_in whole) new_triangles=$(triangles_in reference)
 
-# Waits for a moment: of the whole duration, of its end, or that at which the first new file is in place.
+# Waits for a moment of what runs for $duration ns: any, near its end, or when the first new file is in place.
 await() {
     local directory=$1 which=$2 nanoseconds
     case $which in
@@ -46,11 +46,11 @@ await() {
     esac
     [ "$which" = 0 ] || sleep "$(printf '%d.%09d' $((nanoseconds / 1000000000)) $((nanoseconds % 1000000000)))"
 }
-# kill_build DIRECTORY WHICH GENERATION: a build that is to be that generation, killed.
-kill_build() {
-    "${new[@]}" "$1" >/dev/null 2>&1 &
+# kill_run DIRECTORY WHICH GENERATION COMMAND...: what is to make that generation, killed.
+kill_run() {
+    "${@:4}" >/dev/null 2>&1 &
     builder=$!
-    await "$@"
+    await "${@:1:3}"
     kill -KILL "$builder" 2>/dev/null || true
     wait "$builder" 2>/dev/null || true
 }
@@ -58,7 +58,7 @@ kill_build() {
 kept=0 replaced=0
 over_old() {
     rm -rf over && build_old over && cp over/dataset.json before.json
-    kill_build over "$1" 2
+    kill_run over "$1" 2 "${new[@]}" over
     if cmp -s over/dataset.json before.json; then
         expect_good over "$old_triangles" "kill $2"
         kept=$((kept + 1))
@@ -72,7 +72,7 @@ over_old() {
 }
 into_fresh() {
     rm -rf fresh
-    kill_build fresh "$1" 1
+    kill_run fresh "$1" 1 "${new[@]}" fresh
     [ ! -e fresh/dataset.json ] || expect_good fresh "$new_triangles" "fresh kill $2"
     build_old fresh || complain "fresh kill $2: the next build fails: $(cat "$work/stderr")"
     expect_good fresh "$old_triangles" "after fresh kill $2"
@@ -84,6 +84,42 @@ for ((i = 0; i < kills; ++i)); do
 done
 echo "killed $((2 * kills)) builds; the old dataset was kept $kept and replaced $replaced times"
 
+# in_place NAME WHICH I GENERATION BEFORE AFTER COMMAND...: COMMAND makes that generation of the dataset `place`, a copy
+# of NAME, and is killed. The dataset then has as many triangles as BEFORE or AFTER says; run again it has those of AFTER.
+in_place() {
+    rm -rf place && cp -r "$1" place
+    kill_run place "$2" "$4" "${@:7}"
+    if cmp -s "$1/dataset.json" place/dataset.json; then
+        expect_good place "$5" "$7 $8, kill $3"
+        "${@:7}" >/dev/null 2>"$work/stderr" || complain "$8, kill $3: the next run fails: $(cat "$work/stderr")"
+        kept=$((kept + 1))
+    else
+        replaced=$((replaced + 1))
+    fi
+    expect_good place "$6" "after $8, kill $3"
+    "$preprocess" compact place >/dev/null 2>"$work/stderr" || complain "$8, kill $3: cannot compact"
+    expect_clean place "after $8, kill $3"
+}
+# timed DATASET COMMAND...: sets duration. COMMAND works on `place`.
+timed() {
+    rm -rf place && cp -r "$1" place
+    began=$(date +%s%N)
+    "${@:2}" >/dev/null 2>&1
+    duration=$(($(date +%s%N) - began))
+}
+insert=("$preprocess" insert place old.ply)
+compact=("$preprocess" compact place)
+both=$((new_triangles + old_triangles))
+timed reference "${insert[@]}"
+cp -r place inserted
+kept=0 replaced=0
+for ((i = 0; i < kills; ++i)); do in_place reference $((i % 4)) "$i" 2 "$new_triangles" "$both" "${insert[@]}"; done
+echo "killed $kills inserts; the old dataset was kept $kept and replaced $replaced times"
+timed inserted "${compact[@]}"
+kept=0 replaced=0
+for ((i = 0; i < kills; ++i)); do in_place inserted $((i % 4)) "$i" 3 "$both" "$both" "${compact[@]}"; done
+echo "killed $kills compactions; the old dataset was kept $kept and replaced $replaced times"
+
 # A disk without room, or without room for one more file.
 if [ "$(id -u)" != 0 ] || ! mkdir "$small" || ! mount -t tmpfs -o size=64k none "$small" 2>/dev/null; then
     echo "skipped: no small disk without root and mounts"
@@ -92,16 +128,16 @@ if [ "$(id -u)" != 0 ] || ! mkdir "$small" || ! mount -t tmpfs -o size=64k none 
 fi
 umount "$small"
 
-# build_on_disk OPTIONS: over the old dataset, on a disk with these; the file that it ends at, nothing when it succeeds.
-build_on_disk() {
+# run_on_disk OPTIONS: `make_new` the old dataset, on a disk with these; the file that it ends at goes into `ended`.
+run_on_disk() {
     local status=0
     mount -t tmpfs -o "$1" none "$small"
     cp -r whole "$small/out"
-    "${new[@]}" "$small/out" >/dev/null 2>"$work/stderr" || status=$?
+    make_new "$small/out" >/dev/null 2>"$work/stderr" || status=$?
     sed -i '/^iwalk-/!d' "$work/stderr"  # without the progress
     expect_clean "$small/out" "disk of $1"
     if [ "$status" = 0 ]; then
-        expect_good "$small/out" "$new_triangles" "disk of $1"
+        expect_good "$small/out" "$made_triangles" "disk of $1"
     else
         expect_good_refusal "$status" "$1"
         cmp -s whole/dataset.json "$small/out/dataset.json" || complain "disk of $1: the manifest is another one"
@@ -127,11 +163,20 @@ expect_ended() {
     rm ended
 }
 
-kilobytes=$(($(du -sk whole | cut -f1) + 20))
-while ! build_on_disk "size=${kilobytes}k"; do kilobytes=$((kilobytes * 108 / 100)); done
-expect_ended triangles pages-2.bin targets
-# Each file and directory takes an inode, of which the old dataset has 5. The hierarchy has that of the targets.
-inodes=5
-while ! build_on_disk "nr_inodes=$inodes"; do inodes=$((inodes + 1)); done
-expect_ended .iwalk-lock .iwalk-build triangles pages-2.bin targets dataset.json.new
+# With a disk for just a little more each time.
+fill_disks() {
+    local kilobytes inodes=5
+    kilobytes=$(($(du -sk whole | cut -f1) + 20))
+    while ! run_on_disk "size=${kilobytes}k"; do kilobytes=$((kilobytes * 108 / 100)); done
+    expect_ended triangles pages-2.bin targets
+    # Each file and directory takes an inode, of which the old dataset has 5. The hierarchy has that of the targets.
+    while ! run_on_disk "nr_inodes=$inodes"; do inodes=$((inodes + 1)); done
+    expect_ended .iwalk-lock .iwalk-build triangles pages-2.bin targets dataset.json.new
+}
+make_new() { "${new[@]}" "$1"; }
+made_triangles=$new_triangles
+fill_disks
+make_new() { "$preprocess" insert "$1" new.ply; }
+made_triangles=$both
+fill_disks
 finish
