@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace iwalk {
@@ -10,6 +11,7 @@ class Progress {
     virtual ~Progress() = default;
     virtual void phase(const std::string& name) = 0;
     virtual void done(double part) = 0;       // 0..1 of the phase
+    virtual void triangles(std::uint64_t) {}  // that each of the phases to come goes over
     virtual void note(const std::string&) {}  // what a person should know, in one line
 };
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "common/dataset/level_summary.hpp"
+#include "common/settings.hpp"
 #include "preprocess/build/assemble.hpp"
 #include "preprocess/build/distribute.hpp"
 #include "preprocess/build/grid.hpp"
@@ -29,7 +30,8 @@ constexpr std::uint32_t kMinLeafTriangles = 16, kMaxLeafTriangles = 65536;
 constexpr std::size_t kBatchOverheadBytes = 4 + 4 + 2 + 32;
 constexpr std::size_t kTargetChunkBytes = std::size_t{64} << 10;  // of up to 512 bins
 constexpr unsigned kMostRootLog2 = 61;
-constexpr std::size_t kMostOldFiles = 65535;  // page records name files by 16 bits
+constexpr std::uint64_t kAnnouncedBytes = std::uint64_t{64} << 20;  // less is not worth a word
+constexpr std::size_t kMostOldFiles = 65535;                        // page records name files by 16 bits
 
 class Build {
   public:
@@ -50,8 +52,10 @@ class Build {
         RETURN_IF_ERROR(scan());
         const RecordFormat format(lattice_.rootCellLog2, manifest_.colors, manifest_.normals);
         const std::size_t chunkBytes = parts_.chunkBytes != 0 ? parts_.chunkBytes : budget_.chunkBytes;
+        announceSpace(format.bytes());
         ASSIGN_OR_RETURN(ChunkFile spill, ChunkFile::create(output_.temporary("triangles"), chunkBytes));
         ASSIGN_OR_RETURN(std::vector<Bin> bins, distribute(format, spill));
+        progress_.triangles(manifest_.triangles);
         RETURN_IF_ERROR(assemble(format, spill, std::move(bins)));
         progress_.phase("committing");
         RETURN_IF_ERROR(output_.commit(manifest_));
@@ -61,6 +65,16 @@ class Build {
   private:
     ProgressSink part() {
         return [this](double done) { progress_.done(done); };
+    }
+
+    // Before it is taken: what is on its way to the dataset lies in files that go when the build does.
+    void announceSpace(std::size_t triangleBytes) {
+        std::uint64_t most = 0;
+        for (const ImportSummary& input : summaries_) most += input.triangleBound * triangleBytes;
+        if (most >= kAnnouncedBytes) {
+            progress_.note(fmt::format("temporary files will take up to {} in {}", formatBytes(most),
+                                       output_.temporaryDirectory()));
+        }
     }
 
     Result<void> scan() {
@@ -147,8 +161,9 @@ class Build {
             (manifest_.colors ? kPageColors : 0u) | (manifest_.normals ? kPageNormals : 0u);
         const std::size_t files = manifest_.pageFiles.size();
         if (files > kMostOldFiles) return fail("{}: has {} files: compact it first", options_.output, files);
+        ASSIGN_OR_RETURN(VertexErrors errors, VertexErrors::create(output_.temporaryDirectory()));
         PageWriter writer(pages, static_cast<std::uint16_t>(files), lattice_, format, attributes,
-                          old_ != nullptr ? old_->pages : std::vector<PageRecord>());
+                          std::move(errors), old_ != nullptr ? old_->pages : std::vector<PageRecord>());
         ASSIGN_OR_RETURN(LevelModel model, buildPages(format, spill, std::move(bins), writer));
         setBounds(Hierarchy::box(model.nodes[0]));
         RETURN_IF_ERROR(buildLevels(model, pages.path(), writer));

@@ -36,7 +36,7 @@ Result<void> PageWriter::append(BuiltPage& page, const EntryOf& entryOf) {
         entry.triangles += owner.triangles;
         entry.vertices += owner.vertices;
     }
-    if (!page.errors.empty()) errors_.emplace(number, std::move(page.errors));
+    RETURN_IF_ERROR(errors_.add(number, page.errors));
     records_.push_back(page.record);
     return {};
 }
@@ -45,14 +45,6 @@ Result<void> PageWriter::appendMorph(std::uint32_t number, std::span<const std::
     records_[number].morphOffset = file_.size();
     records_[number].morphFile = fileNumber_;
     return file_.write(bytes);
-}
-
-std::vector<std::uint8_t> PageWriter::takeErrors(std::uint32_t number) {
-    const auto found = errors_.find(number);
-    if (found == errors_.end()) return {};
-    std::vector<std::uint8_t> errors = std::move(found->second);
-    errors_.erase(found);
-    return errors;
 }
 
 }  // namespace iwalk

@@ -4,11 +4,11 @@
 
 #include <functional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "common/file.hpp"
 #include "preprocess/build/page_job.hpp"
+#include "preprocess/build/vertex_errors.hpp"
 
 namespace iwalk {
 
@@ -18,14 +18,15 @@ class PageWriter {
     // `fileNumber`: the file's place among those that page records name. `old`: the pages of the dataset that
     // is inserted into; new ones get numbers behind them.
     PageWriter(OutputFile& file, std::uint16_t fileNumber, const Lattice& lattice, const RecordFormat& format,
-               std::uint32_t attributes, std::vector<PageRecord> old = {})
+               std::uint32_t attributes, VertexErrors errors, std::vector<PageRecord> old = {})
         : file_(file),
           fileNumber_(fileNumber),
           lattice_(lattice),
           format_(format),
           attributes_(attributes),
           records_(std::move(old)),
-          olds_(records_.size()) {}
+          olds_(records_.size()),
+          errors_(std::move(errors)) {}
 
     // The entry that ranges of a page belong to, which is told so.
     using EntryOf = std::function<LevelRecord&(const NodeRanges&)>;
@@ -43,8 +44,8 @@ class PageWriter {
     std::span<const PageRecord> records() const { return records_; }
     PageRecord& record(std::uint32_t number) { return records_[number]; }
     std::vector<PageRecord> takeRecords() { return std::move(records_); }
-    // The errors of a page's vertices, once; empty at full resolution.
-    std::vector<std::uint8_t> takeErrors(std::uint32_t number);
+    // Of the vertices of new pages; none at full resolution.
+    const VertexErrors& errors() const { return errors_; }
 
   private:
     Result<void> append(BuiltPage& page, const EntryOf& entryOf);
@@ -56,7 +57,7 @@ class PageWriter {
     std::uint32_t attributes_;
     std::vector<PageRecord> records_;
     std::size_t olds_;
-    std::unordered_map<std::uint32_t, std::vector<std::uint8_t>> errors_;  // by page
+    VertexErrors errors_;
 };
 
 }  // namespace iwalk

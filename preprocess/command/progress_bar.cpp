@@ -36,6 +36,10 @@ void ProgressBar::done(double part) {
     if (terminal_ && Clock::now() - drawn_ >= kRedraw) draw(std::clamp(part, 0.0, 1.0));
 }
 
+void ProgressBar::triangles(std::uint64_t count) {
+    triangles_ = static_cast<double>(count);
+}
+
 void ProgressBar::note(const std::string& text) {
     if (terminal_) fmt::print(stderr, "\r\x1b[K");
     fmt::print(stderr, "note: {}\n", text);
@@ -48,7 +52,9 @@ void ProgressBar::draw(double part) {
     std::string line =
         fmt::format("\r{:<18} [{:<{}}] {:3.0f} %", phase_, std::string(full, '#'), kBarWidth, part * 100);
     if (part > 0.01 && seconds > 0.5) {
-        line += fmt::format("  {:.1f} %/s  ETA {:.0f} s", part * 100 / seconds, seconds * (1 - part) / part);
+        line += triangles_ > 0 ? fmt::format("  {:.2f} Mtri/s", 1e-6 * part * triangles_ / seconds)
+                               : fmt::format("  {:.1f} %/s", part * 100 / seconds);
+        line += fmt::format("  ETA {:.0f} s", seconds * (1 - part) / part);
     }
     fmt::print(stderr, "{}\x1b[K", line);
     std::fflush(stderr);

@@ -19,6 +19,7 @@ class ProgressBar : public Progress {
 
     void phase(const std::string& name) override;
     void done(double part) override;
+    void triangles(std::uint64_t count) override;
     void note(const std::string& text) override;
 
   private:
@@ -27,6 +28,7 @@ class ProgressBar : public Progress {
     void draw(double part);
 
     bool terminal_;
+    double triangles_ = 0;  // 0: not known yet
     std::string phase_;
     Clock::time_point began_, drawn_;
 };

@@ -119,7 +119,7 @@ Result<void> LevelApplier::findTargets(std::uint32_t index) {
     const StagePage& stagePage = stage_.pages[index];
     Loaded& loaded = loaded_[index - firstLoaded_];
     const SourcePage& page = *loaded.page;
-    loaded.targets = stayingTargets(stage_, stagePage, page);
+    ASSIGN_OR_RETURN(loaded.targets, stayingTargets(stage_, stagePage, page));
     std::vector<const SpaceCell*> cells;
     for (const SpaceCell& cell : stage_.cells) {
         if (cell.meets(stagePage.low, stagePage.high)) cells.push_back(&cell);

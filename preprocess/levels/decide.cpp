@@ -49,7 +49,8 @@ class CellJob {
         std::uint32_t index;
         std::shared_ptr<const SourcePage> page;
         std::vector<std::uint32_t> wedges,
-            points;  // by vertex; kNoNumber when no triangle in the cell uses it
+            points;                        // by vertex; kNoNumber when no triangle in the cell uses it
+        std::vector<std::uint8_t> errors;  // by vertex, as in Stage::errors
     };
 
     bool hasAttributes(const SourcePage& page) const { return !page.colors.empty() || !page.normals.empty(); }
@@ -65,8 +66,9 @@ class CellJob {
     Result<void> gather(std::uint32_t index, PageStore& store) {
         const StagePage& source = stage_.pages[index];
         ASSIGN_OR_RETURN(std::shared_ptr<const SourcePage> page, store.get(source.number, source.record));
-        Gathered gathered{index, page, std::vector<std::uint32_t>(page->positions.size(), kNoNumber), {}};
+        Gathered gathered{index, page, std::vector<std::uint32_t>(page->positions.size(), kNoNumber), {}, {}};
         gathered.points.assign(page->positions.size(), kNoNumber);
+        ASSIGN_OR_RETURN(gathered.errors, stage_.errors->of(source.number));
         std::vector<std::uint8_t> inside(page->positions.size());
         for (std::size_t v = 0; v < inside.size(); ++v)
             inside[v] = cell_.contains(page->positions[v]) ? 1 : 0;
@@ -97,9 +99,9 @@ class CellJob {
     void addVertex(Gathered& from, std::uint16_t vertex) {
         const SourcePage& page = *from.page;
         const auto [point, isNew] = points_.add(page.positions[vertex]);
-        const std::vector<std::uint8_t>& errors = stage_.pages[from.index].errors;
-        const float error = errors.empty() ? stage_.pages[from.index].error
-                                           : static_cast<float>(errors[vertex]) * (stage_.errorUnit / 255.0f);
+        const float error = from.errors.empty()
+                                ? stage_.pages[from.index].error
+                                : static_cast<float>(from.errors[vertex]) * (stage_.errorUnit / 255.0f);
         if (isNew) {
             const CellPoint& p = page.positions[vertex];
             mesh_.points.emplace_back(relative(p.x, centre_.x), relative(p.y, centre_.y),

@@ -13,6 +13,7 @@ class Maker {
         : model_(model), level_(level), writer_(writer) {
         stage_.level = level;
         stage_.limits = limitsAt(model.lattice.rootCellLog2, level);
+        stage_.errors = &writer.errors();
         stage_.errorUnit = limitsAt(model.lattice.rootCellLog2, level + 1).error;
     }
 
@@ -52,7 +53,6 @@ class Maker {
         page.record = writer_.records()[number];
         page.held = held;
         page.fresh = writer_.isNew(number);
-        page.errors = writer_.takeErrors(number);
         page.low = CellPoint(~std::uint64_t{0});
         stage_.pages.push_back(std::move(page));
     }

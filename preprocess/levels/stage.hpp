@@ -29,8 +29,7 @@ struct StagePage {
     bool needed = false;        // an entry is made of it
     CellPoint low{0}, high{0};  // inclusive: contains its vertices
     std::vector<PageOwner> owners;
-    std::vector<std::uint8_t> errors;  // by vertex, in 255ths of the level's error; empty where not known
-    float error = 0;                   // steps; of all vertices, where `errors` is empty
+    float error = 0;  // steps; of all vertices that Stage::errors does not know
 };
 
 // What the pass that makes one level works on: the next finer level, M_(level + 1), as it lies in pages.
@@ -40,8 +39,9 @@ struct Stage {
     std::vector<StagePage> pages;
     std::size_t changing = 0;                                 // pages before this place are not held
     std::unordered_map<std::uint32_t, std::uint32_t> places;  // in `pages`, by page number
-    std::vector<SpaceCell> cells;  // that are decided; elsewhere vertices go where they went before
-    float errorUnit = 0;           // steps; what StagePage::errors are parts of
+    std::vector<SpaceCell> cells;          // that are decided; elsewhere vertices go where they went before
+    const VertexErrors* errors = nullptr;  // by page number, in 255ths of errorUnit
+    float errorUnit = 0;                   // steps
     CollapseLimits limits{};
 };
 

@@ -85,11 +85,12 @@ Result<void> TargetBins::take(std::uint32_t index, PageTargets& targets) {
     return {};
 }
 
-PageTargets stayingTargets(const Stage& stage, const StagePage& page, const SourcePage& source) {
+Result<PageTargets> stayingTargets(const Stage& stage, const StagePage& page, const SourcePage& source) {
     PageTargets targets{source.positions, std::vector<float>(source.positions.size(), page.error),
                         source.colors, source.normals};
-    for (std::size_t v = 0; v < page.errors.size(); ++v) {
-        targets.errors[v] = static_cast<float>(page.errors[v]) * (stage.errorUnit / 255.0f);
+    ASSIGN_OR_RETURN(const std::vector<std::uint8_t> errors, stage.errors->of(page.number));
+    for (std::size_t v = 0; v < errors.size(); ++v) {
+        targets.errors[v] = static_cast<float>(errors[v]) * (stage.errorUnit / 255.0f);
     }
     return targets;
 }

@@ -17,7 +17,7 @@ struct PageTargets {
 };
 
 // All vertices stay where they are.
-PageTargets stayingTargets(const Stage& stage, const StagePage& page, const SourcePage& source);
+Result<PageTargets> stayingTargets(const Stage& stage, const StagePage& page, const SourcePage& source);
 
 // The targets that cells decide upon, sorted by pages in a spill file. Pages are read again in order.
 class TargetBins {
