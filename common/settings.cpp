@@ -106,6 +106,32 @@ std::string levelText(std::uint8_t level) {
     return level == kFullLevel ? "full" : fmt::format("{}", level);
 }
 
+Result<void> parseMode(Settings& settings, const std::string& text) {
+    if (text == "frustum") return settings.mode = Mode::frustum, Result<void>();
+    if (text == "plp") return settings.mode = Mode::plp, Result<void>();
+    return fail("choose frustum or plp");
+}
+
+constexpr std::uint64_t kMinPlpBudget = 1000;  // a range has up to 512
+
+Result<void> parsePlpBudget(Settings& settings, const std::string& text) {
+    const auto triangles = wholeNumber<std::uint64_t>(text);
+    if (!triangles || *triangles < kMinPlpBudget)
+        return fail("not a number of triangles, {} or more", kMinPlpBudget);
+    settings.plpBudget = *triangles;
+    return {};
+}
+
+constexpr double kMinPlpRays = 0.001, kMaxPlpRays = 10;
+
+Result<void> parsePlpRays(Settings& settings, const std::string& text) {
+    const auto percent = wholeNumber<double>(text);
+    if (!percent || !(*percent >= kMinPlpRays && *percent <= kMaxPlpRays))
+        return fail("not a percentage from {} to {}", kMinPlpRays, kMaxPlpRays);
+    settings.plpRays = *percent;
+    return {};
+}
+
 // Everything there is to know about a setting; a new one is one more row here.
 struct Row {
     SettingInfo info;
@@ -113,7 +139,7 @@ struct Row {
     std::string (*print)(const Settings&);
 };
 
-constexpr std::size_t kRows = 7;
+constexpr std::size_t kRows = 10;
 const std::array<Row, kRows>& rows() {
     static const std::array<Row, kRows> table{{
         {{"cache", "BYTES",
@@ -152,6 +178,21 @@ const std::array<Row, kRows>& rows() {
           "triangles"},
          parseLevel,
          [](const Settings& s) { return levelText(s.level); }},
+        {{"mode", "frustum|plp",
+          "what is drawn, default frustum: everything in the view; plp: what probably shows most, not more "
+          "than plp-budget; faster, but parts that can be seen may be missing"},
+         parseMode,
+         [](const Settings& s) { return std::string(s.mode == Mode::plp ? "plp" : "frustum"); }},
+        {{"plp-budget", "TRIANGLES",
+          "with mode plp: the most triangles that a tile draws in a frame, 1000 or more, default 280000; "
+          "more makes fewer pixels wrong and takes longer; pages of six times as many are read"},
+         parsePlpBudget,
+         [](const Settings& s) { return fmt::format("{}", s.plpBudget); }},
+        {{"plp-rays", "PERCENT",
+          "with mode plp: rays that look for what shows, in percent of the tile's pixels, 0.001 to 10, "
+          "default 0.3; more chooses a little better and takes longer"},
+         parsePlpRays,
+         [](const Settings& s) { return fmt::format("{}", s.plpRays); }},
     }};
     return table;
 }

@@ -12,6 +12,7 @@
 namespace iwalk {
 
 enum class Shading : std::uint8_t { automatic, flat, smooth };
+enum class Mode : std::uint8_t { frustum, plp };
 enum class Ramp : std::uint8_t { automatic, none, height };
 
 // Every run-time setting of a server, the same on every tile. The command line, the [settings] table of a
@@ -24,6 +25,9 @@ struct Settings {
     std::uint32_t background = 0x20242a;  // 0xRRGGBB, sRGB
     double near = 0;                      // model units; 0: chosen from the model's size
     std::uint8_t level = kFullLevel;      // that all of the model is drawn at
+    Mode mode = Mode::frustum;
+    std::uint64_t plpBudget = 280000;  // triangles of a tile
+    double plpRays = 0.3;              // percent of the tile's pixels
 };
 
 // One row of the table: how people write a setting.

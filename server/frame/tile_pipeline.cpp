@@ -2,29 +2,15 @@
 
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "common/dataset/page_files.hpp"
+#include "server/frame/tile_counters.hpp"
 
 namespace iwalk {
 namespace {
-
-class Stopwatch {
-  public:
-    // Milliseconds since the last call, or since the beginning.
-    double lap() {
-        const auto now = std::chrono::steady_clock::now();
-        const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-        last_ = now;
-        return ms;
-    }
-
-  private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 std::uint64_t peakRssBytes() {
     rusage usage{};
@@ -93,6 +79,8 @@ Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& datase
     pipeline->cache_ = std::make_unique<PageCache>(dataset.hierarchy, std::move(files),
                                                    Arena(std::move(memory), Renderer::kArenaAlignment),
                                                    settings.fetchThreads);
+    if (settings.mode == Mode::plp)
+        pipeline->plp_.emplace(dataset.hierarchy, pipeline->visibility_, settings);
     return pipeline;
 }
 
@@ -118,6 +106,7 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
 
     const TileView view = viewOf(state);
     renderer_->beginFrame(view);
+    if (plp_) plp_->choose(cut_, {view.projection, view.tile, view.eye, view.near}, *cache_, stats);
     for (const Block& block : blocksOf(view.tile)) drawBlock(view, block, stats);
 
     stats.drawMs = watch.lap() - stats.visibilityMs - stats.fetchWaitMs;
@@ -129,7 +118,8 @@ void TilePipeline::drawBlock(const TileView& view, const Block& block, protocol:
     Stopwatch watch;
     // The snapping of vertices moves the picture by less than a pixel.
     const Frustum frustum = frustumOf(view.projection, block.part, 1, view.near);
-    const std::vector<VisibleRanges> visible = visibility_.visible(cut_, frustum, view.eye);
+    const std::vector<VisibleRanges> visible =
+        plp_ ? plp_->visible(frustum, view.eye) : visibility_.visible(cut_, frustum, view.eye);
     stats.visibilityMs += watch.lap();
 
     cache_->beginFrame(pagesOf(visible));
@@ -138,11 +128,7 @@ void TilePipeline::drawBlock(const TileView& view, const Block& block, protocol:
     renderer_->finish();
     cache_->release();
 
-    const PageCache::Counters counters = cache_->counters();
-    stats.fetchWaitMs += counters.waitMs;
-    stats.fetchedBytes += counters.fetchedBytes;
-    stats.stalls += counters.stalls;
-    stats.badPages += counters.badPages;
+    addCounters(cache_->counters(), stats);
 }
 
 void TilePipeline::drawPages(const std::vector<VisibleRanges>& visible, const Frustum& frustum,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/protocol.hpp"
@@ -8,6 +9,7 @@
 #include "server/cache/page_cache.hpp"
 #include "server/draw/renderer.hpp"
 #include "server/frame/frame_state.hpp"
+#include "server/frame/plp_frame.hpp"
 #include "server/wall/wall.hpp"
 
 namespace iwalk {
@@ -51,6 +53,7 @@ class TilePipeline {
     const std::size_t tile_;
     const Cut cut_;
     const FrustumVisibility visibility_;
+    std::optional<PlpFrame> plp_;  // in mode plp
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<PageCache> cache_;  // after the renderer, whose memory it uses
 };

@@ -4,24 +4,10 @@
 #include <glm/geometric.hpp>
 #include <tuple>
 
+#include "server/visibility/boxes.hpp"
+
 namespace iwalk {
 namespace {
-
-// The part of the box [low, high] (from the eye, steps) that lies farthest along a plane decides for all of
-// it.
-bool meets(const Frustum& frustum, const glm::dvec3& low, const glm::dvec3& high) {
-    const auto farthest = [&](const glm::dvec3& normal) {
-        return std::max(normal.x * low.x, normal.x * high.x) + std::max(normal.y * low.y, normal.y * high.y) +
-               std::max(normal.z * low.z, normal.z * high.z);
-    };
-    for (const glm::dvec3& plane : frustum.planes)
-        if (farthest(plane) < 0) return false;
-    return farthest(frustum.forward) >= frustum.near;
-}
-
-bool meets(const Frustum& frustum, const LatticeEye& eye, const LatticeBox& box) {
-    return meets(frustum, eye.to(box.min), eye.to(box.max));
-}
 
 double squaredDistance(const LatticeEye& eye, const LatticeBox& box) {
     const glm::dvec3 low = eye.to(box.min), high = eye.to(box.max);
@@ -67,7 +53,11 @@ std::vector<VisibleRanges> FrustumVisibility::visible(const Cut& cut, const Frus
         for (int c = 0; c < Hierarchy::childCount(node); ++c)
             open.push_back(node.firstChild + static_cast<std::uint32_t>(c));
     }
+    sortFrontToBack(found, eye);
+    return found;
+}
 
+void FrustumVisibility::sortFrontToBack(std::vector<VisibleRanges>& found, const LatticeEye& eye) const {
     std::vector<std::pair<double, VisibleRanges>> order;
     order.reserve(found.size());
     for (const VisibleRanges& ranges : found)
@@ -77,7 +67,6 @@ std::vector<VisibleRanges> FrustumVisibility::visible(const Cut& cut, const Frus
                std::tuple(b.first, b.second.page, b.second.firstRange);
     });
     std::transform(order.begin(), order.end(), found.begin(), [](const auto& entry) { return entry.second; });
-    return found;
 }
 
 std::uint32_t cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count,

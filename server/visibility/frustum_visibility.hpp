@@ -26,10 +26,13 @@ class FrustumVisibility {
   public:
     explicit FrustumVisibility(const Hierarchy& hierarchy);  // kept by reference
 
-    // Front to back by the distance of pages' boxes from the eye; what belongs to one page stands together.
-    // The order of any two pages depends on the eye and the dataset alone, so that tiles, threads and caches
-    // draw equal depths in the same order. Frustum in lattice steps.
+    // Front to back; frustum in lattice steps.
     std::vector<VisibleRanges> visible(const Cut& cut, const Frustum& frustum, const LatticeEye& eye) const;
+
+    // By the distance of pages' boxes from the eye; what belongs to one page stands together. The order of
+    // any two pages depends on the eye and the dataset alone, so that tiles, threads, caches and modes draw
+    // equal depths in the same order.
+    void sortFrontToBack(std::vector<VisibleRanges>& found, const LatticeEye& eye) const;
 
   private:
     const Hierarchy& hierarchy_;
