@@ -30,6 +30,7 @@ struct Seen {
     EyeBox box;
     float density;   // optical depth per step
     float distance;  // of the middle of its box from the eye, squared and times 4
+    float arriving;  // Candidate::arriving
     float score = 0;
 };
 
@@ -58,7 +59,8 @@ class RangeScores {
             if (!meets(frustum_, low, high)) return;
             const EyeBox box{glm::vec3(low), glm::vec3(high)};
             const glm::vec3 middle = box.low + box.high;
-            seen_.push_back({page, index, range.indexCount / 3, box, density, glm::dot(middle, middle)});
+            seen_.push_back({page, index, range.indexCount / 3, box, density, glm::dot(middle, middle),
+                             candidate.arriving});
         });
     }
 
@@ -69,8 +71,8 @@ class RangeScores {
         });
         RayGrid rays(sight_.projection, sight_.tile, sight_.near, raysPerPixel);
         for (Seen& range : seen_)
-            range.score =
-                rays.pass(range.box, range.density).contribution / static_cast<float>(range.triangles);
+            range.score = range.arriving * rays.pass(range.box, range.density).contribution /
+                          static_cast<float>(range.triangles);
         std::stable_sort(seen_.begin(), seen_.end(),
                          [](const Seen& a, const Seen& b) { return a.score > b.score; });
         return std::move(seen_);
@@ -140,7 +142,7 @@ std::vector<PlpVisibility::Candidate> PlpVisibility::candidates(const Cut& cut,
     for (const EntryPriority& e : entries) {
         if (triangles / kCandidateFactor >= budget_) break;
         triangles += hierarchy_.entries[e.entry].triangles;
-        found.push_back({e.node, e.entry});
+        found.push_back({e.node, e.entry, e.rays > 0 ? e.contribution / e.rays : 1});
     }
     return found;
 }

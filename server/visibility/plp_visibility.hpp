@@ -13,8 +13,8 @@ namespace iwalk {
 //
 // 1. candidates(): entries of the cut by what they show per triangle, from the hierarchy alone, until they
 //    have several times the budget. Their pages are to be read.
-// 2. choose(): the same for the ranges of the candidates, whose boxes are in their pages, until the budget is
-//    spent.
+// 2. choose(): the same for the ranges of the candidates, whose boxes are in their pages, times what the
+//    first step let through to their node, until the budget is spent.
 //
 // Departures from Correa 2004, section 4.3.1, where nodes are drawn whole by the mean contribution of the
 // rays that hit them (docs/results.md has the figures): leaves have up to 16,384 triangles, few of which own
@@ -27,6 +27,7 @@ class PlpVisibility {
     // An entry of the cut whose ranges are to be looked at.
     struct Candidate {
         std::uint32_t node = 0, entry = 0;  // indices in Hierarchy
+        float arriving = 1;  // what a ray that meets its box has left on average; 1 if none does
     };
     // The table of a page, or nullptr where the page cannot be read: its ranges are left out.
     using Tables = std::function<const PageTable*(std::uint32_t page)>;
