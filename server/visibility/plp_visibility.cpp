@@ -12,13 +12,12 @@
 namespace iwalk {
 namespace {
 
-// Candidates have this many times the budget. More find more of what owns a pixel, and read more pages:
-// docs/results.md.
+// Candidates have this many times the budget. More find more of what owns a pixel, and read more pages.
 constexpr std::uint64_t kCandidateFactor = 6;
 
 // What a range hides, compared with what the leaf's opacity says when it is spread over the volume of the
 // leaf's ranges. Less than 1, as surfaces stand behind one another: rays find gaps more often than chance
-// would have it. From 0.2 to 0.5 it makes little difference (docs/results.md).
+// would have it. From 0.2 to 0.5 it makes little difference.
 constexpr float kHiding = 0.35f;
 
 // The optical depth of interior nodes' ranges, for which no opacity was measured.
