@@ -108,12 +108,13 @@ std::string levelText(std::uint8_t level) {
 
 Result<void> parseMode(Settings& settings, const std::string& text) {
     if (text == "frustum") return settings.mode = Mode::frustum, Result<void>();
+    if (text == "plp") return settings.mode = Mode::plp, Result<void>();
     if (text == "cplp") return settings.mode = Mode::cplp, Result<void>();
-    return fail("choose frustum or cplp");
+    return fail("choose frustum, plp or cplp");
 }
 
 std::string modeText(Mode mode) {
-    return mode == Mode::frustum ? "frustum" : "cplp";
+    return mode == Mode::frustum ? "frustum" : mode == Mode::plp ? "plp" : "cplp";
 }
 
 Result<void> parseOcclusion(Settings& settings, const std::string& text) {
@@ -124,6 +125,26 @@ Result<void> parseOcclusion(Settings& settings, const std::string& text) {
 
 std::string occlusionText(OcclusionTest occlusion) {
     return occlusion == OcclusionTest::hzb ? "hzb" : "queries";
+}
+
+constexpr std::uint64_t kMinPlpBudget = 1000;  // a range has up to 512
+
+Result<void> parsePlpBudget(Settings& settings, const std::string& text) {
+    const auto triangles = wholeNumber<std::uint64_t>(text);
+    if (!triangles || *triangles < kMinPlpBudget)
+        return fail("not a number of triangles, {} or more", kMinPlpBudget);
+    settings.plpBudget = *triangles;
+    return {};
+}
+
+constexpr double kMinPlpRays = 0.001, kMaxPlpRays = 10;
+
+Result<void> parsePlpRays(Settings& settings, const std::string& text) {
+    const auto percent = wholeNumber<double>(text);
+    if (!percent || !(*percent >= kMinPlpRays && *percent <= kMaxPlpRays))
+        return fail("not a percentage from {} to {}", kMinPlpRays, kMaxPlpRays);
+    settings.plpRays = *percent;
+    return {};
 }
 
 constexpr std::array<const char*, 5> kShows{"none", "ranges", "levels", "cache", "overdraw"};
@@ -142,7 +163,7 @@ struct Row {
     std::string (*print)(const Settings&);
 };
 
-constexpr std::size_t kRows = 10;
+constexpr std::size_t kRows = 12;
 const std::array<Row, kRows>& rows() {
     static const std::array<Row, kRows> table{{
         {{"cache", "BYTES",
@@ -181,10 +202,12 @@ const std::array<Row, kRows>& rows() {
           "triangles"},
          parseLevel,
          [](const Settings& s) { return levelText(s.level); }},
-        {{"mode", "frustum|cplp",
-          "what is drawn: frustum, everything in view; cplp (default), without what is hidden, to the same "
-          "picture; "
-          "cplp draws a fraction where much is hidden and tests for nothing where all is seen"},
+        {{"mode", "frustum|plp|cplp",
+          "what is drawn, default cplp: what is not hidden, to the same picture as frustum, which draws "
+          "everything in "
+          "view; plp: what probably shows most, not more than plp-budget; faster, but parts that can be seen "
+          "may be "
+          "missing"},
          parseMode,
          [](const Settings& s) { return modeText(s.mode); }},
         {{"occlusion", "hzb|queries",
@@ -193,6 +216,16 @@ const std::array<Row, kRows>& rows() {
           "occlusion queries"},
          parseOcclusion,
          [](const Settings& s) { return occlusionText(s.occlusion); }},
+        {{"plp-budget", "TRIANGLES",
+          "with mode plp: the most triangles that a tile draws in a frame, 1000 or more, default 280000; "
+          "more makes fewer pixels wrong and takes longer; pages of six times as many are read"},
+         parsePlpBudget,
+         [](const Settings& s) { return fmt::format("{}", s.plpBudget); }},
+        {{"plp-rays", "PERCENT",
+          "with mode plp: rays that look for what shows, in percent of the tile's pixels, 0.001 to 10, "
+          "default 0.3; more chooses a little better and takes longer"},
+         parsePlpRays,
+         [](const Settings& s) { return fmt::format("{}", s.plpRays); }},
         {{"show", "none|ranges|levels|cache|overdraw",
           "what colours mean, default none, the model's own: ranges, each another; levels, from blue (0) to "
           "red, full "

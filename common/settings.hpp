@@ -13,7 +13,7 @@ namespace iwalk {
 
 enum class Shading : std::uint8_t { automatic, flat, smooth };
 enum class Ramp : std::uint8_t { automatic, none, height };
-enum class Mode : std::uint8_t { frustum, cplp };
+enum class Mode : std::uint8_t { frustum, plp, cplp };
 enum class Show : std::uint8_t { none, ranges, levels, cache, overdraw };
 enum class OcclusionTest : std::uint8_t { hzb, queries };
 
@@ -29,6 +29,8 @@ struct Settings {
     std::uint8_t level = kFullLevel;      // that all of the model is drawn at
     Mode mode = Mode::cplp;
     OcclusionTest occlusion = OcclusionTest::hzb;  // of Mode::cplp
+    std::uint64_t plpBudget = 280000;              // of Mode::plp: triangles of a tile
+    double plpRays = 0.3;                          // percent of the tile's pixels
     Show show = Show::none;
 };
 

@@ -49,7 +49,7 @@ void main() {
 // drawn could be nearer than the range's box. So it is cut off there, and what a box hides is truly hidden.
 const char* const kVisibilityFragment = R"(
 layout(location = 4) uniform uint firstId;
-layout(location = 11) uniform float nearest;
+layout(location = 11) uniform float nearest = 1.0;
 layout(location = 0) out uint id;
 #if COUNTS
 layout(binding = 0, r32ui) uniform uimage2D counts;

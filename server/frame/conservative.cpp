@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/frame/stopwatch.hpp"
+#include "server/frame/tile_counters.hpp"
 
 namespace iwalk {
 namespace {

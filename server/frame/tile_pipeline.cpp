@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "common/dataset/page_files.hpp"
-#include "server/frame/stopwatch.hpp"
+#include "server/frame/tile_counters.hpp"
 
 namespace iwalk {
 namespace {
@@ -75,6 +75,8 @@ Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& datase
                                                    Arena(std::move(memory), Renderer::kArenaAlignment),
                                                    settings.fetchThreads);
     pipeline->pages_.emplace(dataset.hierarchy, *pipeline->cache_, *pipeline->renderer_);
+    if (settings.mode == Mode::plp)
+        pipeline->plp_.emplace(dataset.hierarchy, pipeline->visibility_, settings);
     if (settings.mode == Mode::cplp) {
         ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion,
                          makeOcclusion(settings.occlusion, *pipeline->renderer_));
@@ -106,6 +108,7 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
 
     const TileView view = viewOf(state);
     renderer_->beginFrame(view);
+    if (plp_) plp_->choose(cut_, {view.projection, view.tile, view.eye, view.near}, *cache_, stats);
     for (const Block& block : blocksOf(view.tile)) drawBlock(BlockView(view, block), stats);
     if (conservative_) conservative_->endFrame();
 
@@ -117,7 +120,8 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
 
 void TilePipeline::drawBlock(const BlockView& view, protocol::TileStats& stats) {
     Stopwatch watch;
-    const std::vector<VisibleRanges> visible = visibility_.visible(cut_, view.frustum, view.eye);
+    const std::vector<VisibleRanges> visible =
+        plp_ ? plp_->visible(view.frustum, view.eye) : visibility_.visible(cut_, view.frustum, view.eye);
     stats.visibilityMs += watch.lap();
 
     if (conservative_) {
@@ -130,11 +134,7 @@ void TilePipeline::drawBlock(const BlockView& view, protocol::TileStats& stats) 
     }
     cache_->release();
 
-    const PageCache::Counters counters = cache_->counters();
-    stats.fetchWaitMs += counters.waitMs;
-    stats.fetchedBytes += counters.fetchedBytes;
-    stats.stalls += counters.stalls;
-    stats.badPages += counters.badPages;
+    addCounters(cache_->counters(), stats);
 }
 
 double nearPlane(const Settings& settings, const Manifest& manifest) {

@@ -10,6 +10,7 @@
 #include "server/draw/renderer.hpp"
 #include "server/frame/conservative.hpp"
 #include "server/frame/frame_state.hpp"
+#include "server/frame/plp_frame.hpp"
 #include "server/wall/wall.hpp"
 
 namespace iwalk {
@@ -51,6 +52,7 @@ class TilePipeline {
     const std::size_t tile_;
     const Cut cut_;
     const FrustumVisibility visibility_;
+    std::optional<PlpFrame> plp_;  // in mode plp
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<PageCache> cache_;  // after the renderer, whose memory it uses
     std::optional<PageDrawing> pages_;

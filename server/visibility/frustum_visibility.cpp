@@ -4,24 +4,10 @@
 #include <glm/geometric.hpp>
 #include <tuple>
 
+#include "server/visibility/boxes.hpp"
+
 namespace iwalk {
 namespace {
-
-// The part of the box [low, high] (from the eye, steps) that lies farthest along a plane decides for all of
-// it.
-bool meets(const Frustum& frustum, const glm::dvec3& low, const glm::dvec3& high) {
-    const auto farthest = [&](const glm::dvec3& normal) {
-        return std::max(normal.x * low.x, normal.x * high.x) + std::max(normal.y * low.y, normal.y * high.y) +
-               std::max(normal.z * low.z, normal.z * high.z);
-    };
-    for (const glm::dvec3& plane : frustum.planes)
-        if (farthest(plane) < 0) return false;
-    return farthest(frustum.forward) >= frustum.near;
-}
-
-bool meets(const Frustum& frustum, const LatticeEye& eye, const LatticeBox& box) {
-    return meets(frustum, eye.to(box.min), eye.to(box.max));
-}
 
 double squaredDistance(const LatticeEye& eye, const LatticeBox& box) {
     const glm::dvec3 low = eye.to(box.min), high = eye.to(box.max);
@@ -67,7 +53,11 @@ std::vector<VisibleRanges> FrustumVisibility::visible(const Cut& cut, const Frus
         for (int c = 0; c < Hierarchy::childCount(node); ++c)
             open.push_back(node.firstChild + static_cast<std::uint32_t>(c));
     }
+    sortFrontToBack(found, eye);
+    return found;
+}
 
+void FrustumVisibility::sortFrontToBack(std::vector<VisibleRanges>& found, const LatticeEye& eye) const {
     std::vector<std::pair<double, VisibleRanges>> order;
     order.reserve(found.size());
     for (const VisibleRanges& ranges : found)
@@ -79,20 +69,15 @@ std::vector<VisibleRanges> FrustumVisibility::visible(const Cut& cut, const Frus
     std::transform(order.begin(), order.end(), found.begin(), [](const auto& entry) { return entry.second; });
     for (std::size_t i = 1; i < found.size(); ++i)
         found[i].rank = found[i - 1].rank + (found[i].page != found[i - 1].page ? 1 : 0);
-    return found;
 }
 
 void cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,
                 const BoxProjection& projection, const LatticeEye& eye, std::vector<DrawnRange>& ranges) {
-    const glm::dvec3 origin = eye.to(table.origin);
-    for (std::uint32_t r = first; r < first + count; ++r) {
-        const Range& range = table.ranges[r];
-        const glm::dvec3 low = origin + glm::dvec3(range.boxMin[0], range.boxMin[1], range.boxMin[2]);
-        const glm::dvec3 high = origin + glm::dvec3(range.boxMax[0], range.boxMax[1], range.boxMax[2]);
-        if (!meets(frustum, low, high)) continue;
+    const auto add = [&](std::uint32_t r, const glm::dvec3& low, const glm::dvec3& high) {
         const ScreenBox box = projection.of(low, high);
-        if (!box.empty()) ranges.push_back({r, range.firstIndex, range.indexCount, box});
-    }
+        if (!box.empty()) ranges.push_back({r, table.ranges[r].firstIndex, table.ranges[r].indexCount, box});
+    };
+    forRangesIn(table, first, count, frustum, eye, add);
 }
 
 }  // namespace iwalk

@@ -5,6 +5,7 @@
 
 #include "common/dataset/page.hpp"
 #include "server/adapt/cut.hpp"
+#include "server/visibility/boxes.hpp"
 #include "server/visibility/eye.hpp"
 #include "server/visibility/screen_box.hpp"
 #include "server/wall/projection.hpp"
@@ -30,10 +31,13 @@ class FrustumVisibility {
   public:
     explicit FrustumVisibility(const Hierarchy& hierarchy);  // kept by reference
 
-    // Front to back by the distance of pages' boxes from the eye; what belongs to one page stands together.
-    // The order of any two pages depends on the eye and the dataset alone, so that tiles, threads and caches
-    // draw equal depths in the same order. Frustum in lattice steps.
+    // Front to back; frustum in lattice steps.
     std::vector<VisibleRanges> visible(const Cut& cut, const Frustum& frustum, const LatticeEye& eye) const;
+
+    // By the distance of pages' boxes from the eye; what belongs to one page stands together. The order of
+    // any two pages depends on the eye and the dataset alone, so that tiles, threads, caches and modes draw
+    // equal depths in the same order.
+    void sortFrontToBack(std::vector<VisibleRanges>& found, const LatticeEye& eye) const;
 
     // Around all that a page has, lattice.
     const LatticeBox& pageBox(std::uint32_t page) const { return pageBoxes_[page]; }
@@ -48,6 +52,20 @@ class FrustumVisibility {
     const Hierarchy& hierarchy_;
     std::vector<LatticeBox> pageBoxes_;  // around all entries of a page
 };
+
+// Calls use(number, low, high) for those of the ranges `table.ranges[first, first + count)` whose boxes meet
+// the frustum: [low, high] is the box from the eye, steps.
+template <class Use>
+void forRangesIn(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,
+                 const LatticeEye& eye, const Use& use) {
+    const glm::dvec3 origin = eye.to(table.origin);
+    for (std::uint32_t r = first; r < first + count; ++r) {
+        const Range& range = table.ranges[r];
+        const glm::dvec3 low = origin + glm::dvec3(range.boxMin[0], range.boxMin[1], range.boxMin[2]);
+        const glm::dvec3 high = origin + glm::dvec3(range.boxMax[0], range.boxMax[1], range.boxMax[2]);
+        if (meets(frustum, low, high)) use(r, low, high);
+    }
+}
 
 // Appends the ranges among `table.ranges[first, first + count)` that may have a pixel in the frustum.
 void cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,

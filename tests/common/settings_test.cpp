@@ -16,8 +16,9 @@ std::string refusal(const std::string& name, const std::string& text) {
 TEST(Settings, TableNamesEverySetting) {
     std::vector<std::string> names;
     for (const SettingInfo& info : settingTable()) names.emplace_back(info.name);
-    EXPECT_EQ(names, (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background",
-                                               "near", "level"}));
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background", "near",
+                                        "level", "mode", "occlusion", "plp-budget", "plp-rays", "show"}));
 }
 
 TEST(Settings, DefaultsAreWhatTheHelpSays) {
@@ -43,7 +44,14 @@ TEST(Settings, TextIsReadBack) {
                                                           {"background", "#203040"},
                                                           {"near", "0.1"},
                                                           {"level", "full"},
-                                                          {"level", "12"}}) {
+                                                          {"level", "12"},
+                                                          {"mode", "plp"},
+                                                          {"mode", "frustum"},
+                                                          {"mode", "cplp"},
+                                                          {"occlusion", "queries"},
+                                                          {"show", "overdraw"},
+                                                          {"plp-budget", "70000"},
+                                                          {"plp-rays", "0.05"}}) {
         ASSERT_TRUE(setSetting(settings, name, text).ok()) << name << " " << text;
         EXPECT_EQ(settingText(settings, name), text);
     }
@@ -71,6 +79,11 @@ TEST(Settings, RefusalsNameTheSettingAndWhatIsRight) {
     for (const char* bad : {"", "-1", "255", "256", "1.5", "finest"})
         EXPECT_NE(refusal("level", bad), "") << bad;
     EXPECT_NE(refusal("ramp", "HEIGHT"), "");
+    EXPECT_NE(refusal("mode", "all").find("frustum, plp or cplp"), std::string::npos);
+    for (const char* bad : {"", "0", "999", "-70000", "70k", "1e6"})
+        EXPECT_NE(refusal("plp-budget", bad), "") << bad;
+    for (const char* bad : {"", "0", "-1", "nan", "inf", "10.1", "0.1%"})
+        EXPECT_NE(refusal("plp-rays", bad), "") << bad;
 }
 
 TEST(Settings, ARefusalChangesNothing) {

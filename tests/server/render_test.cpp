@@ -156,6 +156,34 @@ TEST_F(RenderTest, CacheSizeAndThreadsDoNotChangeAPixel) {
     EXPECT_EQ(all.stats().triangles, batches.stats().triangles);
 }
 
+TEST_F(RenderTest, PlpWithEnoughBudgetMissesNothing) {
+    const Dataset dataset = buildFile(std::string(IWALK_CONFIG_DIR) + "/sample/interior.ply");
+    const Result<std::vector<Camera>> views =
+        loadCameraPath(std::string(IWALK_CONFIG_DIR) + "/sample/views.json");
+    ASSERT_TRUE(views.ok()) << views.error().message;
+    Settings plp;
+    plp.mode = Mode::plp;
+    plp.plpBudget = dataset.manifest.triangles;
+    const Wall wall = wallOf(1100, 604, 2, 1);  // two blocks in a tile
+    for (const Camera& camera : *views)
+        expectSame(WallRenders(dataset, {}).draw(wall, camera), WallRenders(dataset, plp).draw(wall, camera));
+}
+
+// Nor does the cache, which holds less than the candidates, change what is chosen.
+TEST_F(RenderTest, PlpKeepsItsBudgetWhateverTheCache) {
+    PlyOptions options;
+    const Dataset dataset = build(soup(30000, options), options);
+    const Wall wall = wallOf(640, 480, 1, 1);
+    Settings roomy, tight;
+    roomy.mode = tight.mode = Mode::plp;
+    roomy.plpBudget = tight.plpBudget = 4000;
+    tight.cacheBytes = 128 << 10;
+    WallRenders one(dataset, roomy), other(dataset, tight);
+    expectSame(one.draw(wall, kInside), other.draw(wall, kInside));
+    EXPECT_LE(one.stats().triangles, 4000u);
+    EXPECT_GT(one.stats().triangles, 3400u);
+}
+
 TEST_F(RenderTest, FinerThanAllLevelsIsTheInput) {
     const Dataset dataset = build(sphere(1, 4));
     const Wall wall = wallOf(320, 240, 1, 1);

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "common/dataset/page_files.hpp"
-#include "server/frame/stopwatch.hpp"
+#include "server/frame/tile_counters.hpp"
 #include "server/visibility/depth_pyramid.hpp"
 #include "tests/bench/visibility/item_buffer.hpp"
 

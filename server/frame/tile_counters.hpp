@@ -2,6 +2,9 @@
 
 #include <chrono>
 
+#include "common/protocol.hpp"
+#include "server/cache/page_cache.hpp"
+
 namespace iwalk {
 
 class Stopwatch {
@@ -17,5 +20,12 @@ class Stopwatch {
   private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+inline void addCounters(const PageCache::Counters& counters, protocol::TileStats& stats) {
+    stats.fetchWaitMs += counters.waitMs;
+    stats.fetchedBytes += counters.fetchedBytes;
+    stats.stalls += counters.stalls;
+    stats.badPages += counters.badPages;
+}
 
 }  // namespace iwalk

@@ -1,0 +1,221 @@
+// iwalk-plp-bench: how many pixels are right in mode plp, by budget and by the way to choose, along a path
+// through a dataset; and what choosing costs. Markdown on standard output, JSON with --json.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "server/draw/gl_context.hpp"
+#include "server/frame/tile_counters.hpp"
+#include "tests/bench/plp/methods.hpp"
+#include "tests/server/wall_renders.hpp"
+
+namespace {
+
+using namespace iwalk;
+using namespace iwalk::bench;
+using nlohmann::json;
+
+struct Options {
+    std::string dataset, path, json;
+    int frames = 60, width = 1024, height = 768;
+    std::vector<int> tiles{1, 4};
+    std::vector<std::uint64_t> budgets{35000, 70000, 140000, 280000};
+    double rays = Settings().plpRays;
+};
+
+// `frames` cameras on straight lines between those of the path, evenly.
+std::vector<Camera> along(const std::vector<Camera>& path, int frames) {
+    std::vector<Camera> cameras;
+    for (int frame = 0; frame < frames; ++frame) {
+        const double place = frames == 1 ? 0 : double(frame) * double(path.size() - 1) / (frames - 1);
+        const std::size_t before = std::min(static_cast<std::size_t>(place), path.size() - 1);
+        const Camera& from = path[before];
+        const Camera& to = path[std::min(before + 1, path.size() - 1)];
+        const double t = place - double(before);
+        Camera camera = from;
+        camera.eye += t * (to.eye - from.eye);
+        camera.target += t * (to.target - from.target);
+        cameras.push_back(camera);
+    }
+    return cameras;
+}
+
+struct Spread {
+    double median = 0, least = 0, p10 = 0;
+};
+
+Spread spreadOf(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return {values[values.size() / 2], values.front(), values[values.size() / 10]};
+}
+
+// All tiles of all frames of a wall of n x n tiles.
+Result<std::vector<std::vector<Shot>>> takeShots(const Bench& bench, const Options& options, int n,
+                                                 const std::vector<Camera>& cameras) {
+    const int width = n * options.width, height = n * options.height;
+    const Wall wall = tools::wallOf(width, height, n, n);
+    ASSIGN_OR_RETURN(const std::unique_ptr<OwnerRenders> renders,
+                     OwnerRenders::create(bench.dataset, bench.cut, bench.pages, width, height));
+    const int step = bench.dataset.manifest.stepExponent;
+    const double near = std::ldexp(nearPlane({}, bench.dataset.manifest), -step);
+    std::vector<std::vector<Shot>> frames;
+    for (const Camera& camera : cameras) {
+        std::vector<std::vector<Owned>> owned = renders->draw(wall, camera);
+        const ScreenProjection projection = projectScreen(wall.screens(camera.fovY)[0], camera);
+        std::vector<Shot>& shots = frames.emplace_back();
+        for (std::size_t tile = 0; tile < wall.tiles.size(); ++tile)
+            shots.push_back({{projection, wall.tiles[tile].onScreen, LatticeEye::at(camera.eye, step), near},
+                             std::move(owned[tile])});
+    }
+    return frames;
+}
+
+// The share of right pixels of a wall, in percent, over the frames.
+Spread accuracyOf(const Method& method, const std::vector<std::vector<Shot>>& frames, std::uint64_t budget) {
+    std::vector<double> shares;
+    for (const std::vector<Shot>& shots : frames) {
+        double correct = 0, all = 0;
+        for (const Shot& shot : shots) {
+            correct += static_cast<double>(correctPixels(shot, method.choose(shot, budget)));
+            all += double(shot.sight.tile.width) * shot.sight.tile.height;
+        }
+        shares.push_back(100 * correct / all);
+    }
+    return spreadOf(std::move(shares));
+}
+
+json accuracy(const Bench& bench, const Options& options, int n,
+              const std::vector<std::vector<Shot>>& frames) {
+    const OriginalPlp original(bench.dataset.hierarchy, bench.cut, bench.dataset.manifest.leafTriangles);
+    std::printf("\n%d tile%s of %dx%d, right pixels in %%: median (least)\n\n| chosen by |", n * n,
+                n > 1 ? "s" : "", options.width, options.height);
+    for (const std::uint64_t budget : options.budgets)
+        std::printf(" %llu |", static_cast<unsigned long long>(budget));
+    std::printf("\n| --- |");
+    for (std::size_t i = 0; i < options.budgets.size(); ++i) std::printf(" --- |");
+    json rows = json::array();
+    for (const Method& method : allMethods(bench, original)) {
+        std::printf("\n| %s |", method.name.c_str());
+        for (const std::uint64_t budget : options.budgets) {
+            const Spread spread = accuracyOf(method, frames, budget);
+            std::printf(" %.2f (%.2f) |", spread.median, spread.least);
+            std::fflush(stdout);
+            rows.push_back({{"tiles", n * n},
+                            {"method", method.name},
+                            {"budget", budget},
+                            {"median", spread.median},
+                            {"min", spread.least},
+                            {"p10", spread.p10}});
+        }
+    }
+    std::printf("\n");
+    return rows;
+}
+
+double trianglesInView(const Bench& bench, const FrustumVisibility& visibility, const TileSight& sight) {
+    const Frustum frustum = sight.frustum();
+    double triangles = 0;
+    for (const VisibleRanges& v : visibility.visible(bench.cut, frustum, sight.eye)) {
+        const PageTable& table = bench.pages.tables[v.page];
+        forRangesIn(table, v.firstRange, v.rangeCount, frustum, sight.eye,
+                    [&](std::uint32_t r, const glm::dvec3&, const glm::dvec3&) {
+                        triangles += table.ranges[r].indexCount / 3;
+                    });
+    }
+    return triangles;
+}
+
+// What a tile costs, and how many triangles the ranges have that own a pixel.
+json costs(const Bench& bench, const Options& options, int n, const std::vector<std::vector<Shot>>& frames) {
+    const FrustumVisibility visibility(bench.dataset.hierarchy);
+    const PlpVisibility plp(bench.dataset.hierarchy, visibility, options.budgets.back(), bench.raysPerPixel);
+    const auto table = [&](std::uint32_t page) { return &bench.pages.tables[page]; };
+    std::vector<double> nodes, ranges, perMillion, inView, owners;
+    for (const std::vector<Shot>& shots : frames)
+        for (const Shot& shot : shots) {
+            Stopwatch watch;
+            const auto candidates = plp.candidates(bench.cut, shot.sight);
+            nodes.push_back(watch.lap());
+            plp.choose(candidates, table, shot.sight);
+            ranges.push_back(watch.lap());
+            inView.push_back(trianglesInView(bench, visibility, shot.sight) / 1e6);
+            if (inView.back() > 0) perMillion.push_back((nodes.back() + ranges.back()) / inView.back());
+            double triangles = 0;
+            for (const Owned& owned : shot.owned)
+                triangles += bench.pages.tables[owned.page].ranges[owned.range].indexCount / 3;
+            owners.push_back(triangles);
+        }
+    const double megapixels = double(options.width) * options.height / 1e6;
+    const double nodesMs = spreadOf(nodes).median, rangesMs = spreadOf(ranges).median;
+    const json row{{"tiles", n * n},
+                   {"nodes_ms_per_megapixel", nodesMs / megapixels},
+                   {"ranges_ms_per_megapixel", rangesMs / megapixels},
+                   {"ms_per_million_triangles_in_view", perMillion.empty() ? 0 : spreadOf(perMillion).median},
+                   {"million_triangles_in_view", spreadOf(inView).median},
+                   {"triangles_of_owners_median", spreadOf(owners).median},
+                   {"triangles_of_owners_max", *std::max_element(owners.begin(), owners.end())}};
+    std::printf("\nA tile of %d, budget %llu, %g %% rays, medians:\n\n| what | |\n| --- | --- |\n", n * n,
+                static_cast<unsigned long long>(options.budgets.back()), options.rays);
+    for (const auto& [key, value] : row.items())
+        if (key != "tiles") std::printf("| %s | %.4g |\n", key.c_str(), value.get<double>());
+    return row;
+}
+
+Result<void> run(const Options& options) {
+    Bench bench;
+    ASSIGN_OR_RETURN(bench.dataset, openDataset(options.dataset));
+    ASSIGN_OR_RETURN(const std::vector<Camera> path, loadCameraPath(options.path));
+    ASSIGN_OR_RETURN(const std::unique_ptr<GlContext> context, GlContext::createHeadless());
+    bench.cut = cutAtLevel(bench.dataset.hierarchy, kFullLevel);
+    ASSIGN_OR_RETURN(bench.pages, loadPages(bench.dataset, bench.cut));
+    bench.cells = cellsOfNodes(bench.dataset.hierarchy);
+    bench.raysPerPixel = options.rays / 100;
+    const std::vector<Camera> cameras = along(path, options.frames);
+
+    json report{{"dataset", options.dataset},   {"triangles", bench.dataset.manifest.triangles},
+                {"path", options.path},         {"frames", options.frames},
+                {"rays_percent", options.rays}, {"accuracy", json::array()},
+                {"costs", json::array()}};
+    std::printf("%s, %d frames of %s\n", options.dataset.c_str(), options.frames, options.path.c_str());
+    for (const int n : options.tiles) {
+        ASSIGN_OR_RETURN(const auto frames, takeShots(bench, options, n, cameras));
+        for (json& row : accuracy(bench, options, n, frames)) report["accuracy"].push_back(std::move(row));
+        report["costs"].push_back(costs(bench, options, n, frames));
+    }
+    if (!options.json.empty()) {
+        std::ofstream out(options.json);
+        out << report.dump(2) << '\n';
+        if (!out.flush()) return fail("cannot write {}", options.json);
+    }
+    return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app("How many pixels are right in mode plp along a path, and what it costs.");
+    app.option_defaults()->always_capture_default();
+    app.add_option("DATASET", options.dataset, "directory that iwalk-preprocess made")->required();
+    app.add_option("PATH", options.path, "camera path (JSON); cameras between its frames are made")
+        ->required();
+    app.add_option("--frames", options.frames, "cameras")->check(CLI::Range(1, 100000));
+    app.add_option("--tiles", options.tiles, "walls of N x N tiles")->check(CLI::Range(1, 16));
+    app.add_option("--width", options.width, "px of a tile")->check(CLI::Range(1, 16384));
+    app.add_option("--height", options.height, "px of a tile")->check(CLI::Range(1, 16384));
+    app.add_option("--budgets", options.budgets, "triangles of a tile")->check(CLI::PositiveNumber);
+    app.add_option("--rays", options.rays, "as iwalk-server's --plp-rays")->check(CLI::Range(0.001, 10.0));
+    app.add_option("--json", options.json, "file for all figures");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    const Result<void> done = run(options);
+    if (!done) std::fprintf(stderr, "iwalk-plp-bench: %s\n", done.error().message.c_str());
+    return done ? 0 : 1;
+}
