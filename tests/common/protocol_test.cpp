@@ -84,10 +84,14 @@ TEST(Protocol, WelcomeRoundTrip) {
 
 TEST(Protocol, FrameDoneRoundTrip) {
     FrameDone done{9, 10, 16.5, {{}, {}}};
-    done.tiles[1] = {1, 1, 2, 3, 4, 5, 6, 7, 8.5, 9, 10, 11, 12, 13};
+    done.tiles[1].hiddenRanges = 7;
+    done.tiles[1].screenErrorPx = 8.5;
+    done.tiles[1].badPages = 12;
+    done.tiles[1].peakRssBytes = 13;
     const FrameDone same = roundTrip(done);
     EXPECT_EQ(same.timeMs, 16.5);
     ASSERT_EQ(same.tiles.size(), 2u);
+    EXPECT_EQ(same.tiles[1].hiddenRanges, 7u);
     EXPECT_EQ(same.tiles[1].screenErrorPx, 8.5);
     EXPECT_EQ(same.tiles[1].badPages, 12u);
     EXPECT_EQ(same.tiles[1].peakRssBytes, 13u);
