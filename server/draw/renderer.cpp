@@ -7,7 +7,6 @@
 #include <epoxy/gl.h>
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat3x3.hpp>
@@ -23,25 +22,6 @@ namespace {
 constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
 constexpr std::uint32_t kNoBank = 0xffffffff;  // of pages that are not there any more
-constexpr int kMaxWindow = 16384;              // px: GL 4.5's least largest viewport
-
-// The square of the screen that clip space spans while a block is drawn. Its edge is a power of two, so that
-// transforms are exact. Screens wider than the largest viewport have a window for each strip of half that
-// size; like blocks, strips belong to the screen and not to the tile.
-struct Window {
-    int x = 0, y = 0, edge = 0;  // px of the screen
-};
-
-Window windowFor(const TileView& view, const Block& block) {
-    const int longest = std::max(view.screenWidth, view.screenHeight);
-    const int edge = std::min(kMaxWindow, static_cast<int>(std::bit_ceil(static_cast<unsigned>(longest))));
-    const int strip = edge / 2;
-    const auto start = [&](int from, int screen) {
-        return screen <= edge ? 0 : from / strip * strip - strip / 2;
-    };
-    return {start(block.x, view.screenWidth), start(block.y, view.screenHeight), edge};
-}
-static_assert(kMaxWindow / 2 % kBlockEdge == 0);
 
 class GlRenderer : public Renderer {
   public:
@@ -228,7 +208,7 @@ void GlRenderer::useVisibilityProgram(bool wide) {
     glUseProgram(used_);
     glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
     glUniform1f(kNear, static_cast<float>(view_.near));
-    const Window window = windowFor(view_, block_);
+    const Window window = windowFor(view_.screenWidth, view_.screenHeight, block_);
     const float half = static_cast<float>(window.edge) / 2;
     glViewport(window.x - block_.x, window.y - block_.y, window.edge, window.edge);
     glScissor(block_.part.x - block_.x, block_.part.y - block_.y, block_.part.width, block_.part.height);
@@ -395,19 +375,6 @@ DepthImage GlRenderer::readDepth() {
 }
 
 }  // namespace
-
-std::vector<Block> blocksOf(const PixelRect& tile) {
-    std::vector<Block> blocks;
-    const int right = tile.x + tile.width, bottom = tile.y + tile.height;
-    for (int y = tile.y / kBlockEdge * kBlockEdge; y < bottom; y += kBlockEdge)
-        for (int x = tile.x / kBlockEdge * kBlockEdge; x < right; x += kBlockEdge) {
-            const int left = std::max(x, tile.x), top = std::max(y, tile.y);
-            const int width = std::min(x + kBlockEdge, right) - left,
-                      height = std::min(y + kBlockEdge, bottom) - top;
-            blocks.push_back({x, y, {left, top, width, height}});
-        }
-    return blocks;
-}
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const PixelRect& tile, const SceneLook& look) {
     auto renderer = std::make_unique<GlRenderer>(tile, look);

@@ -11,6 +11,7 @@
 #include "common/image.hpp"
 #include "common/settings.hpp"
 #include "server/cache/page_cache.hpp"
+#include "server/draw/blocks.hpp"
 #include "server/visibility/frustum_visibility.hpp"
 
 namespace iwalk {
@@ -24,17 +25,6 @@ struct SceneLook {
     Ramp ramp = Ramp::automatic;
     std::uint32_t background = 0;  // 0xRRGGBB, sRGB
 };
-
-// Tiles are drawn in blocks of the screen: squares that begin at multiples of kBlockEdge px, or what of them
-// lies in the tile. A rasteriser's interpolated depth depends, in its last bits, on where the framebuffer
-// begins. Since it begins at the block's corner, whatever the tile, a pixel comes out the same however the
-// screen is cut.
-inline constexpr int kBlockEdge = 1024;
-struct Block {
-    int x = 0, y = 0;  // px of the screen: the corner that its framebuffer begins at
-    PixelRect part;    // px of the screen: what is drawn
-};
-std::vector<Block> blocksOf(const PixelRect& tile);  // px of the screen
 
 // One tile's view in one frame.
 struct TileView {

@@ -17,7 +17,7 @@ TEST(Settings, TableNamesEverySetting) {
     std::vector<std::string> names;
     for (const SettingInfo& info : settingTable()) names.emplace_back(info.name);
     EXPECT_EQ(names, (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background",
-                                               "near", "level"}));
+                                               "near", "level", "mode", "occlusion"}));
 }
 
 TEST(Settings, DefaultsAreWhatTheHelpSays) {
@@ -43,7 +43,11 @@ TEST(Settings, TextIsReadBack) {
                                                           {"background", "#203040"},
                                                           {"near", "0.1"},
                                                           {"level", "full"},
-                                                          {"level", "12"}}) {
+                                                          {"level", "12"},
+                                                          {"mode", "frustum"},
+                                                          {"mode", "cplp"},
+                                                          {"occlusion", "queries"},
+                                                          {"occlusion", "hzb"}}) {
         ASSERT_TRUE(setSetting(settings, name, text).ok()) << name << " " << text;
         EXPECT_EQ(settingText(settings, name), text);
     }

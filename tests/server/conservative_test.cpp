@@ -25,7 +25,8 @@ class ConservativeTest : public RenderTest, public ::testing::WithParamInterface
         return settings;
     }
     // Flies with and without and compares frame by frame, one picture against tiles.
-    Totals expectSame(const Dataset& dataset, const std::vector<Camera>& path, const Settings& cplp, int columns = 1) {
+    Totals expectSame(const Dataset& dataset, const std::vector<Camera>& path, const Settings& cplp,
+                      int columns = 1) {
         Settings frustum = cplp;
         frustum.mode = Mode::frustum;
         const Wall one = wallOf(320, 240, 1, 1), tiles = wallOf(320, 240, columns, columns);
@@ -76,7 +77,8 @@ std::vector<Camera> drift(const glm::dvec3& from, const glm::dvec3& step, int fr
 TEST_P(ConservativeTest, AWallHidesWhatIsBehindIt) {
     Triangles triangles = wallAt(0, 4, 24);
     for (int i = 0; i < 12; ++i) add(triangles, moved(sphere(0.5, 4), {2.0 + i, 0.2 * i - 1, 0.1 * i}));
-    const Totals totals = expectSame(build(triangles), drift({-3, 0, 0}, {0.1, 0.02, 0}, 5), settings("cplp"), 2);
+    const Totals totals =
+        expectSame(build(triangles), drift({-3, 0, 0}, {0.1, 0.02, 0}, 5), settings("cplp"), 2);
     EXPECT_GT(totals.hidden, 0u);
     EXPECT_LT(totals.triangles, totals.allTriangles / 2);
 }
@@ -116,8 +118,8 @@ TEST_P(ConservativeTest, ANeedleThroughAKeyhole) {
     expectSame(build(triangles), path, settings("cplp"));
 }
 
-// Surfaces that are twice there, in pages of their own and in other colours: which of two equal depths is seen
-// must not depend on what was drawn first.
+// Surfaces that are twice there, in pages of their own and in other colours: which of two equal depths is
+// seen must not depend on what was drawn first.
 TEST_P(ConservativeTest, CoincidentFaces) {
     PlyOptions options;
     Triangles triangles;
@@ -146,7 +148,8 @@ TEST_P(ConservativeTest, SliversEdgeOnBehindAWall) {
     Triangles triangles = wallAt(0, 3, 16);
     options.colors.assign(triangles.size(), {100, 100, 100});
     for (int i = 0; i < 10000; ++i) {
-        const double y = 0.5 * number(random), z = 0.4 * number(random), toY = 0.5 * number(random), toZ = 0.4 * number(random);
+        const double y = 0.5 * number(random), z = 0.4 * number(random), toY = 0.5 * number(random),
+                     toZ = 0.4 * number(random);
         const double along = 0.5 + 0.5 * number(random);
         triangles.push_back({onRay(y, z, 0.002), onRay(toY, toZ, 0.002),
                              onRay(std::lerp(y, toY, along), std::lerp(z, toZ, along), 3)});
@@ -154,8 +157,7 @@ TEST_P(ConservativeTest, SliversEdgeOnBehindAWall) {
     options.colors.resize(triangles.size(), {255, 0, 0});
     options.doubles = true;
     std::vector<Camera> path;  // straight at the wall, lest the corners of boxes come before it
-    for (int i = 0; i < 4; ++i)
-        path.push_back({eye + glm::dvec3(1e-4 * i, 0, 0), {0, 0, 0}, {0, 0, 1}, 60});
+    for (int i = 0; i < 4; ++i) path.push_back({eye + glm::dvec3(1e-4 * i, 0, 0), {0, 0, 0}, {0, 0, 1}, 60});
     const Totals totals = expectSame(build(triangles, options), path, settings("cplp"));
     EXPECT_GT(totals.hidden, 0u);
 }
@@ -178,7 +180,8 @@ TEST_P(ConservativeTest, ACacheThatHoldsAlmostNothing) {
 
 TEST_P(ConservativeTest, FlyingThroughTheSample) {
     const Dataset dataset = buildFile(std::string(IWALK_CONFIG_DIR) + "/sample/interior.ply");
-    const Totals totals = expectSame(dataset, flight(dataset.manifest.bounds, 16, {0, 0, 1}), settings("cplp"), 2);
+    const Totals totals =
+        expectSame(dataset, flight(dataset.manifest.bounds, 16, {0, 0, 1}), settings("cplp"), 2);
     EXPECT_GT(totals.hidden, 0u);
 }
 

@@ -21,7 +21,9 @@ Vertex shade(const ScreenProjection& projection, float near, const glm::dvec3& p
 
 class ScreenBoxTest : public ::testing::Test {
   protected:
-    double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+    double number(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random_);
+    }
     glm::dvec3 point(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
     Camera camera(double fovY) { return {point(1), point(1), point(1), fovY}; }
     static Wall wall(int width, int height) {
@@ -33,8 +35,8 @@ class ScreenBoxTest : public ::testing::Test {
     std::mt19937 random_{5};
 };
 
-// Every pixel whose centre a triangle in the box may cover lies between those of its corners; every depth at its
-// corners is one that the box allows.
+// Every pixel whose centre a triangle in the box may cover lies between those of its corners; every depth at
+// its corners is one that the box allows.
 TEST_F(ScreenBoxTest, ContainsWhateverTheShaderMakesOfTheBox) {
     int tested = 0;
     for (int round = 0; round < 4000; ++round) {
