@@ -7,6 +7,7 @@ namespace iwalk {
 namespace {
 
 constexpr int kMaxWindow = 16384;  // px: GL 4.5's least largest viewport
+static_assert(kMaxWindow / 2 % kBlockEdge == 0);
 
 }  // namespace
 
@@ -19,7 +20,6 @@ Window windowFor(int screenWidth, int screenHeight, const Block& block) {
     };
     return {start(block.x, screenWidth), start(block.y, screenHeight), edge};
 }
-static_assert(kMaxWindow / 2 % kBlockEdge == 0);
 
 std::vector<Block> blocksOf(const PixelRect& tile) {
     std::vector<Block> blocks;

@@ -13,7 +13,7 @@ constexpr std::uint64_t kFirstGuess = 100'000;
 constexpr std::uint64_t kLookAgain = 200'000;
 // Pages that are asked for together: more let fetch threads read ahead, fewer leave more unread that the next
 // look finds hidden.
-constexpr std::size_t kPagesTogether = 64;
+constexpr std::size_t kPagesTogether = 16;
 
 }  // namespace
 

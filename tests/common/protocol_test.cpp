@@ -84,14 +84,27 @@ TEST(Protocol, WelcomeRoundTrip) {
 
 TEST(Protocol, FrameDoneRoundTrip) {
     FrameDone done{9, 10, 16.5, {{}, {}}};
-    done.tiles[1].hiddenRanges = 7;
-    done.tiles[1].screenErrorPx = 8.5;
-    done.tiles[1].badPages = 12;
-    done.tiles[1].peakRssBytes = 13;
+    done.tiles[1] = {.tile = 1,
+                     .guessMs = 2.5,
+                     .pyramidMs = 3.5,
+                     .testMs = 4.5,
+                     .triangles = 6,
+                     .guessTriangles = 7,
+                     .hiddenPages = 9,
+                     .hiddenRanges = 10,
+                     .screenErrorPx = 8.5,
+                     .badPages = 12,
+                     .peakRssBytes = 13};
     const FrameDone same = roundTrip(done);
     EXPECT_EQ(same.timeMs, 16.5);
     ASSERT_EQ(same.tiles.size(), 2u);
-    EXPECT_EQ(same.tiles[1].hiddenRanges, 7u);
+    EXPECT_EQ(same.tiles[1].guessMs, 2.5);
+    EXPECT_EQ(same.tiles[1].pyramidMs, 3.5);
+    EXPECT_EQ(same.tiles[1].testMs, 4.5);
+    EXPECT_EQ(same.tiles[1].triangles, 6u);
+    EXPECT_EQ(same.tiles[1].guessTriangles, 7u);
+    EXPECT_EQ(same.tiles[1].hiddenPages, 9u);
+    EXPECT_EQ(same.tiles[1].hiddenRanges, 10u);
     EXPECT_EQ(same.tiles[1].screenErrorPx, 8.5);
     EXPECT_EQ(same.tiles[1].badPages, 12u);
     EXPECT_EQ(same.tiles[1].peakRssBytes, 13u);

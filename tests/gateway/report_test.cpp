@@ -36,13 +36,27 @@ TEST(Report, HasTheKeysOfTheDesign) {
     ASSERT_EQ(report["frames"].size(), 2u);
     EXPECT_EQ(keys(report["frames"][1]), (std::vector<std::string>{"frame", "tiles", "time_ms"}));
     EXPECT_EQ(report["frames"][1]["frame"], 1);
-    EXPECT_EQ(
-        keys(report["frames"][1]["tiles"][1]),
-        (std::vector<std::string>{"adapt_ms", "bad_pages", "barrier_wait_ms", "draw_ms", "fetch_wait_ms",
-                                  "fetched_bytes", "guess_ms", "guess_triangles", "hidden_pages", "hidden_ranges",
-                                  "host", "prefetched_bytes", "pyramid_ms", "ranges", "rank",
-                                  "screen_error_px", "stalls", "test_ms", "tile", "triangles",
-                                  "visibility_ms"}));
+    EXPECT_EQ(keys(report["frames"][1]["tiles"][1]), (std::vector<std::string>{"adapt_ms",
+                                                                               "bad_pages",
+                                                                               "barrier_wait_ms",
+                                                                               "draw_ms",
+                                                                               "fetch_wait_ms",
+                                                                               "fetched_bytes",
+                                                                               "guess_ms",
+                                                                               "guess_triangles",
+                                                                               "hidden_pages",
+                                                                               "hidden_ranges",
+                                                                               "host",
+                                                                               "prefetched_bytes",
+                                                                               "pyramid_ms",
+                                                                               "ranges",
+                                                                               "rank",
+                                                                               "screen_error_px",
+                                                                               "stalls",
+                                                                               "test_ms",
+                                                                               "tile",
+                                                                               "triangles",
+                                                                               "visibility_ms"}));
     EXPECT_EQ(report["frames"][1]["tiles"][1]["tile"], "right");
     EXPECT_EQ(report["summary"]["frame_ms"], json({{"median", 20.0}, {"p01", 20.0}, {"p99", 20.0}}));
     EXPECT_EQ(report["summary"]["tiles"][1], json({{"tile", "right"}, {"rank", 1}, {"peak_rss_bytes", 99}}));
