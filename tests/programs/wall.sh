@@ -60,7 +60,7 @@ same_as_before first "a second wall"
 # One vanishes in the middle, one sends garbage, one is silent, one says only half a message.
 repeated=$(for _ in $(seq 60); do echo -n "$frames"; done)
 echo "{\"fov_y_deg\": 50, \"frames\": [${repeated%,}]}" >long.json
-timeout 60 "$bin/iwalk-client" --connect "$address" --path long.json >/dev/null 2>&1 &
+"$bin/iwalk-client" --connect "$address" --path long.json >/dev/null 2>&1 &
 vanishing=$!
 sleep 0.3
 kill -KILL "$vanishing" 2>/dev/null || true
