@@ -13,8 +13,8 @@ Result<std::unique_ptr<SpillFile>> SpillFile::create(const std::string& director
     std::string path = directory + "/iwalk-spill-XXXXXX";
     const int descriptor = ::mkostemp(path.data(), O_CLOEXEC);
     if (descriptor < 0) {
-        return fail("{}: cannot make a spill file ({}): give a directory that can be written, or more memory",
-                    directory, std::strerror(errno));
+        return fail("{}: cannot make a spill file ({}): {}", directory, std::strerror(errno),
+                    errno == ENOSPC ? "free some space there" : "give a directory that can be written");
     }
     ::unlink(path.c_str());
     return std::unique_ptr<SpillFile>(new SpillFile(directory, descriptor));

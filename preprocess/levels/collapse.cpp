@@ -174,10 +174,7 @@ class Collapser {
         bool any = false;
         for (std::size_t place = 0; place < ring_.size(); ++place) {
             Ring::Edge& edge = ring_.edge(place);
-            if (edge.count > 2) continue;
-            edge.feature = edge.count == 1 ||
-                           glm::dot(ring_.fan(edge.first).normal, ring_.fan(edge.second).normal) < 0 ||
-                           colorsMeet(s, place);
+            edge.feature = ring_.endsAt(place) || (edge.count == 2 && colorsMeet(s, place));
             any = any || edge.feature;
         }
         return any;

@@ -26,6 +26,7 @@ class Ring {
         std::uint32_t first;   // a triangle of the edge, its place in the fan
         std::uint32_t second;  // the other one, when count is 2
         std::uint32_t count;   // triangles at the edge
+        int turns;             // those that have it first, in their order, less those that have it last
         bool feature;          // border, sharp fold, or two colours meet
     };
     // The point, then `after` and `before` of the ring, in the triangle's order.
@@ -58,6 +59,7 @@ class Ring {
         const std::uint32_t place = static_cast<std::uint32_t>(size_++);
         points_[place] = point;
         edges_[place].count = 0;
+        edges_[place].turns = 0;
         edges_[place].feature = false;
         x_[place] = way.x, y_[place] = way.y, z_[place] = way.z;
         return place;
@@ -75,6 +77,21 @@ class Ring {
             (edge.count == 0 ? edge.first : edge.second) = at;
             ++edge.count;
         }
+        ++edges_[after].turns;
+        --edges_[before].turns;
+    }
+
+    // Whether the surface ends or folds by more than 90 degrees at the edge: one of its triangles has none on
+    // the other side. Where triangles lie upon one another, that is not a matter of their number.
+    bool endsAt(std::size_t place) const {
+        const Edge& edge = edges_[place];
+        if (edge.count == 1) return true;
+        if (edge.count == 2 && edge.turns == 0)
+            return glm::dot(fan_[edge.first].normal, fan_[edge.second].normal) < 0;
+        for (std::size_t t = 0; t < fanSize_; ++t) {
+            if (fan_[t].has(place) && !continues(t, place)) return true;
+        }
+        return false;
     }
 
     // Of each neighbour: the largest distance from the planes of the fan's triangles and, if asked for, from
@@ -103,6 +120,21 @@ class Ring {
     using Lanes = stdx::fixed_size_simd<float, 8>;
     static constexpr std::size_t kMost = 2 * kMostFan;
     static_assert(kMost % Lanes::size() == 0);
+
+    // From the edge's line to the third corner.
+    glm::vec3 inward(const FanTriangle& triangle, std::size_t place) const {
+        const glm::vec3 edge = way(place),
+                        third = way(triangle.after == place ? triangle.before : triangle.after);
+        const float length = glm::dot(edge, edge);
+        return length > 0 ? third - (glm::dot(third, edge) / length) * edge : third;
+    }
+    bool continues(std::size_t t, std::size_t place) const {
+        const glm::vec3 here = inward(fan_[t], place);
+        for (std::size_t other = 0; other < fanSize_; ++other) {
+            if (fan_[other].has(place) && glm::dot(here, inward(fan_[other], place)) < 0) return true;
+        }
+        return false;
+    }
 
     static Lanes lanes(const std::array<float, kMost>& values, std::size_t begin) {
         return Lanes(&values[begin], stdx::element_aligned);
