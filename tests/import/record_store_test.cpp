@@ -71,8 +71,7 @@ TEST(RecordStoreTest, aSpillFileThatCannotBeMadeIsAnError) {
     ASSERT_FALSE(room.ok());
     EXPECT_EQ(room.error().message,
               "/nowhere: cannot make a spill file (No such file or directory): give a directory that can be "
-              "written, or "
-              "more memory");
+              "written");
 }
 
 }  // namespace
