@@ -49,7 +49,7 @@ TEST_F(LevelJudgeTest, AClosedSphereStaysClosed) {
     EXPECT_EQ(report.openEdges, 0u);
     EXPECT_EQ(report.looseBoxes, 0u);
     EXPECT_GT(report.twoLevels + report.moreLevels, 5u);
-    EXPECT_LT(report.leastTriangles, report.full.triangles / 4);
+    EXPECT_LT(report.leastTriangles, report.full.triangles / 8);
 }
 
 TEST_F(LevelJudgeTest, BoxesOfRangesNest) {
