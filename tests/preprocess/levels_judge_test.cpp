@@ -81,5 +81,25 @@ TEST_F(LevelJudgeTest, SmallPartsStay) {
     EXPECT_LE(worst(build(input, 200)), 1.0);
 }
 
+// Two plates with windows that lie upon one another: borders of the windows have two triangles each, and are
+// borders.
+TEST_F(LevelJudgeTest, BordersOfSheetsUponOneAnotherStay) {
+    constexpr int kEdge = 64;
+    FakeInput input;
+    const auto corner = [](int x, int y) { return Corner{glm::dvec3(x, y, 0)}; };
+    for (int y = 0; y < kEdge; ++y) {
+        for (int x = 0; x < kEdge; ++x) {
+            if (x % 8 >= 3 && x % 8 < 6 && y % 16 >= 2 && y % 16 < 13) continue;
+            const Corner a = corner(x, y), b = corner(x + 1, y), c = corner(x + 1, y + 1),
+                         d = corner(x, y + 1);
+            for (int sheet = 0; sheet < 2; ++sheet) {
+                input.triangles.push_back({a, b, c});
+                input.triangles.push_back({a, c, d});
+            }
+        }
+    }
+    EXPECT_LE(worst(build(input, 1000)), 1.1);  // 1.06; 7.7 when they are not known as borders
+}
+
 }  // namespace
 }  // namespace iwalk
