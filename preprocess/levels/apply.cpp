@@ -120,6 +120,7 @@ Result<void> LevelApplier::findTargets(std::uint32_t index) {
     Loaded& loaded = loaded_[index - firstLoaded_];
     const SourcePage& page = *loaded.page;
     ASSIGN_OR_RETURN(loaded.targets, stayingTargets(stage_, stagePage, page));
+    if (!oldTargets_) return {};  // all cells were decided
     std::vector<const SpaceCell*> cells;
     for (const SpaceCell& cell : stage_.cells) {
         if (cell.meets(stagePage.low, stagePage.high)) cells.push_back(&cell);
@@ -130,7 +131,6 @@ Result<void> LevelApplier::findTargets(std::uint32_t index) {
             std::ranges::any_of(cells, [&](const SpaceCell* cell) { return cell->contains(p); }));
     }
     if (std::ranges::find(decided, false) == decided.end()) return {};
-    CHECK(oldTargets_.has_value());
     return oldTargets_->set(stage_, stagePage, page, decided, loaded.targets);
 }
 

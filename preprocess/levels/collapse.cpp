@@ -20,7 +20,7 @@ namespace {
 // Sweeps go up these parts of the limit: cheap collapses come before dear ones nearly as if all were sorted.
 constexpr std::array<float, 5> kSteps{0.25f, 0.5f, 0.67f, 0.83f, 1.0f};
 // A step ends when a sweep collapses less than this part of the points that are left.
-constexpr float kFewCollapses = 0.01f;
+constexpr float kFewCollapses = 0.03f;
 constexpr int kMostSweeps = 12;
 // A triangle may turn by this cosine (about 75 degrees) at once.
 constexpr float kLeastTurn = 0.26f;
@@ -46,7 +46,7 @@ class Collapser {
         std::iota(map_.wedges.begin(), map_.wedges.end(), 0u);
         for (std::uint32_t t = 0; t < faces_.size(); ++t) {
             faces_[t].corners = mesh.triangles[t];
-            updateNormal(t);
+            faces_[t].setNormal(mesh_.points);
         }
     }
 
@@ -74,25 +74,10 @@ class Collapser {
     }
 
   private:
-    struct Face {
-        std::array<std::uint32_t, 3> corners;  // points
-        glm::vec3 normal;                      // unit; 0 without area
-    };
-
     bool alive(std::uint32_t point) const { return map_.points[point] == point; }
     const glm::vec3& at(std::uint32_t point) const { return mesh_.points[point]; }
     std::array<std::uint32_t, 3>& corners(std::uint32_t triangle) { return faces_[triangle].corners; }
-    bool has(std::uint32_t triangle, std::uint32_t point) const {
-        const auto& [a, b, c] = faces_[triangle].corners;
-        return a == point || b == point || c == point;
-    }
-
-    void updateNormal(std::uint32_t t) {
-        const auto& [a, b, c] = corners(t);
-        const glm::vec3 cross = glm::cross(at(b) - at(a), at(c) - at(a));
-        const float length = glm::length(cross);
-        faces_[t].normal = length > 0 ? cross / length : glm::vec3(0);
-    }
+    bool has(std::uint32_t triangle, std::uint32_t point) const { return faces_[triangle].has(point); }
 
     // The images of images.
     static void flatten(std::vector<std::uint32_t>& map) {
@@ -106,21 +91,53 @@ class Collapser {
     void collapseUpTo(float threshold) {
         for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
             ++sweepNumber_;
-            std::size_t left = 0, collapsed = 0;
-            for (std::uint32_t point = 0; point < map_.points.size(); ++point) {
-                if (!alive(point) || mesh_.held[point] != 0) continue;
-                ++left;
-                collapsed += collapsePoint(point, threshold) ? 1u : 0u;
+            const std::size_t left = findCandidates(threshold);
+            std::size_t collapsed = 0;
+            for (std::size_t i = 0; i < candidates_.size(); ++i) {
+                bringNear(i);
+                const std::uint32_t point = candidates_[i];
+                // Neighbours of what has collapsed wait for the next sweep: then collapses spread evenly.
+                if (sweep_[point] != sweepNumber_) collapsed += collapsePoint(point, threshold) ? 1u : 0u;
             }
             if (static_cast<float>(collapsed) <= kFewCollapses * static_cast<float>(left)) return;
         }
     }
 
+    // The points to look at, and how many are left. What was too dear is looked at again in the last step, if
+    // its neighbourhood has changed: looking earlier took a quarter more looks for a thousandth fewer
+    // triangles.
+    std::size_t findCandidates(float threshold) {
+        const bool last = threshold == limits_.error;
+        std::size_t left = 0;
+        candidates_.clear();
+        for (std::uint32_t point = 0; point < map_.points.size(); ++point) {
+            if (!alive(point) || mesh_.held[point] != 0) continue;
+            ++left;
+            const bool dear = known_[point] > threshold && !(last && dirty_[point] != 0);
+            if (!dear && mesh_.errors[point] <= threshold) candidates_.push_back(point);
+        }
+        return left;
+    }
+
+    // What the next candidates look at is fetched from memory while this one is: an eighth of a build's
+    // processor time.
+    void bringNear(std::size_t i) const {
+        const auto fanOf = [&](std::size_t ahead) {
+            return i + ahead < candidates_.size() ? fans_.of(candidates_[i + ahead])
+                                                  : std::span<const std::uint32_t>();
+        };
+        __builtin_prefetch(fanOf(6).data());
+        for (const std::uint32_t triangle : fanOf(4)) __builtin_prefetch(&faces_[triangle]);
+        for (const std::uint32_t triangle : fanOf(2)) {
+            for (const std::uint32_t point : faces_[triangle].corners) {
+                __builtin_prefetch(&mesh_.points[point]);
+                __builtin_prefetch(&mesh_.errors[point]);
+            }
+        }
+    }
+
     // Collapses s into its cheapest neighbour that will do.
     bool collapsePoint(std::uint32_t s, float threshold) {
-        // `known_` bounds what it would cost; where nothing changed it is not computed again.
-        if (sweep_[s] == sweepNumber_ || (dirty_[s] == 0 && known_[s] > threshold)) return false;
-        if (mesh_.errors[s] > threshold) return false;
         dirty_[s] = 0;
         known_[s] = limits_.error * 2;
         if (!findNeighbours(s)) return false;
@@ -288,13 +305,12 @@ class Collapser {
         }
         for (const std::uint32_t triangle : moved_) {
             std::ranges::replace(corners(triangle), s, t);
-            updateNormal(triangle);
+            faces_[triangle].setNormal(mesh_.points);
         }
         fans_.append(t, moved_);
         fans_.clear(s);
     }
 
-    // Neighbours wait for the next sweep: then collapses spread evenly.
     void touch(std::uint32_t triangle) {
         for (const std::uint32_t point : corners(triangle)) {
             dirty_[point] = 1;
@@ -353,6 +369,7 @@ class Collapser {
     std::vector<std::uint32_t> sweep_;  // by point: the sweep in which its neighbourhood last changed
     std::vector<float> known_;          // by point: at least what its collapse will cost
     std::uint32_t sweepNumber_ = 0;
+    std::vector<std::uint32_t> candidates_;  // of the sweep, in order
     // Of the point under consideration:
     Ring ring_;
     std::size_t worst_ = 0;                  // the ring's place with the largest error

@@ -3,10 +3,28 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
 namespace iwalk {
+
+// A triangle and its normal, as they change.
+struct Face {
+    std::array<std::uint32_t, 3> corners;  // points
+    glm::vec3 normal;                      // unit; 0 without area
+
+    bool has(std::uint32_t point) const {
+        return corners[0] == point || corners[1] == point || corners[2] == point;
+    }
+    void setNormal(const std::vector<glm::vec3>& points) {
+        const glm::vec3& a = points[corners[0]];
+        const glm::vec3 cross = glm::cross(points[corners[1]] - a, points[corners[2]] - a);
+        const float length = glm::length(cross);
+        normal = length > 0 ? cross / length : glm::vec3(0);
+    }
+};
 
 // The triangles around each point, as they change.
 class Fans {

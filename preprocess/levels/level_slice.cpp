@@ -54,7 +54,11 @@ class Maker {
   public:
     Maker(const RecordFormat& format, const Lattice& lattice, std::span<const LevelSource> sources,
           float errorLimit)
-        : format_(format), lattice_(lattice), sources_(sources), errorLimit_(errorLimit) {}
+        : format_(format),
+          lattice_(lattice),
+          sources_(sources),
+          errorLimit_(errorLimit),
+          numbers_(sources.size()) {}
 
     Slice run(unsigned leastLevels) {
         const std::vector<SourceRange> ranges = sortedRanges(sources_);
@@ -106,9 +110,14 @@ class Maker {
     }
 
     void addImage(const LevelSource& source, std::uint32_t first) {
+        std::vector<std::uint32_t>& numbers = numbers_[static_cast<std::size_t>(&source - sources_.data())];
+        if (numbers.empty()) numbers.assign(source.page->positions.size(), kNoNumber);
         std::array<std::uint32_t, 3> points{};
         for (std::size_t c = 0; c < 3; ++c) {
-            points[c] = points_.add(positionOf(source, source.page->indices[first + c])).first;
+            const std::uint16_t vertex = source.page->indices[first + c];
+            std::uint32_t& number = numbers[vertex];
+            if (number == kNoNumber) number = points_.add(positionOf(source, vertex)).first;
+            points[c] = number;
         }
         if (points[0] == points[1] || points[1] == points[2] || points[2] == points[0]) return;
         Image image{points, first, false};
@@ -173,6 +182,7 @@ class Maker {
     std::span<const LevelSource> sources_;
     float errorLimit_;
     Numbers<CellPoint, PointHash> points_;
+    std::vector<std::vector<std::uint32_t>> numbers_;  // by source and vertex: of its image
     std::vector<Image> images_;
     Slice slice_;
 };

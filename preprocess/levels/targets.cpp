@@ -1,9 +1,8 @@
 #include "preprocess/levels/targets.hpp"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace iwalk {
 namespace {
@@ -27,11 +26,6 @@ std::vector<std::uint32_t> dealBins(const Stage& stage) {
         bins.push_back(bin);
     }
     return bins;
-}
-
-bool comesBefore(const VertexTarget& a, const VertexTarget& b) {
-    const auto key = [](const VertexTarget& t) { return std::uint64_t{t.stagePage} << 32 | t.vertex; };
-    return key(a) < key(b);
 }
 
 }  // namespace
@@ -69,14 +63,27 @@ Result<void> TargetBins::load(std::size_t bin) {
         targets_.resize(before + words.size() / kWords);
         std::memcpy(static_cast<void*>(targets_.data() + before), words.data(), words.size() * 4);
     }
-    tbb::parallel_sort(targets_.begin(), targets_.end(), comesBefore);
+    sortByPage(bin);
     return {};
+}
+
+// Each vertex is there once: the order of a page's targets does not matter.
+void TargetBins::sortByPage(std::size_t bin) {
+    const auto pages = std::ranges::equal_range(binOf_, static_cast<std::uint32_t>(bin));
+    firstPage_ = static_cast<std::size_t>(pages.begin() - binOf_.begin());
+    ends_.assign(pages.size() + 1, 0);
+    for (const VertexTarget& target : targets_) ++ends_[target.stagePage - firstPage_ + 1];
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    order_.resize(targets_.size());
+    for (std::uint32_t i = 0; i < targets_.size(); ++i)
+        order_[ends_[targets_[i].stagePage - firstPage_]++] = i;
 }
 
 Result<void> TargetBins::take(std::uint32_t index, PageTargets& targets) {
     if (binOf_[index] != loaded_) RETURN_IF_ERROR(load(binOf_[index]));
-    const auto own = std::ranges::equal_range(targets_, index, {}, &VertexTarget::stagePage);
-    for (const VertexTarget& target : own) {
+    const std::size_t page = index - firstPage_;
+    for (std::size_t i = page == 0 ? 0 : ends_[page - 1]; i < ends_[page]; ++i) {
+        const VertexTarget& target = targets_[order_[i]];
         targets.positions[target.vertex] = target.position;
         targets.errors[target.vertex] = target.error;
         if (!targets.colors.empty()) targets.colors[target.vertex] = target.color;

@@ -33,14 +33,18 @@ class TargetBins {
   private:
     static constexpr std::size_t kWords = sizeof(VertexTarget) / 4;
     Result<void> load(std::size_t bin);
+    void sortByPage(std::size_t bin);
 
     ChunkFile& file_;
     const Stage& stage_;
     std::vector<std::uint32_t> binOf_;  // by stage page
     BinWriter writer_;
     std::vector<Bin> bins_;
-    std::size_t loaded_ = SIZE_MAX;      // bin
-    std::vector<VertexTarget> targets_;  // of it, by page and vertex
+    std::size_t loaded_ = SIZE_MAX;  // bin
+    std::vector<VertexTarget> targets_;
+    std::vector<std::uint32_t> order_;  // places in targets_, page by page
+    std::size_t firstPage_ = 0;         // of the bin
+    std::vector<std::size_t> ends_;     // by page of the bin: end of its part of order_
 };
 
 }  // namespace iwalk

@@ -60,8 +60,9 @@ ClippedPolygon clipToCell(std::span<const glm::vec3, 3> triangle) {
     Polygon polygon;
     for (const glm::vec3& corner : triangle) polygon.add(glm::dvec3(corner));
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        polygon = clipSide(polygon, axis, 0, 1);
-        polygon = clipSide(polygon, axis, 1, -1);
+        const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+        if (low < 0) polygon = clipSide(polygon, axis, 0, 1);
+        if (high > 1) polygon = clipSide(polygon, axis, 1, -1);
     }
     // Crossings may be outside by a rounding error.
     for (std::size_t i = 0; i < polygon.count; ++i) {
