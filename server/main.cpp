@@ -5,6 +5,7 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -14,7 +15,10 @@
 #include "common/version.hpp"
 #include "server/draw/gl_context.hpp"
 #include "server/frame/frame_loop.hpp"
+#include "server/frame/pattern_wall.hpp"
 #include "server/options.hpp"
+#include "server/present/tile_writer.hpp"
+#include "server/wall/assign.hpp"
 
 namespace {
 
@@ -48,18 +52,33 @@ void logTo(const std::string& who) {
 bool allFine(Sync& sync, const Result<void>& mine) {
     if (sync.agree(mine.ok())) return true;
     const std::vector<std::string> reasons = sync.gatherText(mine.ok() ? "" : mine.error().message);
+    if (sync.rank() != 0) return false;
     for (const std::string& reason : std::set<std::string>(reasons.begin(), reasons.end()))
         if (!reason.empty()) std::fprintf(stderr, "iwalk-server: %s\n", reason.c_str());
     return false;
 }
 
-Result<void> readInputs(ServerOptions& options, Dataset& dataset, const Sync& sync) {
+Result<void> readWall(ServerOptions& options, const Sync& sync) {
     RETURN_IF_ERROR(readWallFile(options));
-    if (options.wall.tiles.size() != static_cast<std::size_t>(sync.size()))
-        return fail("{} has {} tiles, but there are {} ranks: start mpirun -np {}", options.wallFile,
-                    options.wall.tiles.size(), sync.size(), options.wall.tiles.size());
+    if (options.wall.tiles.size() == static_cast<std::size_t>(sync.size())) return {};
+    return fail("{} has {} tiles, but there are {} ranks: start mpirun -np {}", options.wallFile,
+                options.wall.tiles.size(), sync.size(), options.wall.tiles.size());
+}
+
+Result<void> readInputs(ServerOptions& options, Dataset& dataset, const Sync& sync) {
+    RETURN_IF_ERROR(readWall(options, sync));
     ASSIGN_OR_RETURN(dataset, openDataset(options.dataset));
     return {};
+}
+
+// From here on rank i draws tile i. The result is the host of each tile.
+Result<std::vector<std::string>> placeRanks(const Wall& wall, Sync& sync) {
+    const std::vector<std::string> hosts = sync.gatherText(hostName());
+    ASSIGN_OR_RETURN(const std::vector<std::size_t> tiles, tilesOfRanks(wall, hosts));
+    std::vector<std::string> ofTiles(hosts.size());
+    for (std::size_t rank = 0; rank < hosts.size(); ++rank) ofTiles[tiles[rank]] = hosts[rank];
+    sync.renumber(static_cast<int>(tiles[static_cast<std::size_t>(sync.rank())]));
+    return ofTiles;
 }
 
 protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& dataset,
@@ -69,8 +88,10 @@ protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& datas
     welcome.datasetTriangles = dataset.manifest.triangles;
     welcome.datasetBytes = dataset.bytes;
     welcome.bounds = dataset.manifest.bounds;
-    welcome.wallWidth = options.wall.width;
-    welcome.wallHeight = options.wall.height;
+    if (options.wall.freeScreens.empty()) {
+        welcome.wallWidth = options.wall.width;
+        welcome.wallHeight = options.wall.height;
+    }
     for (std::size_t i = 0; i < options.wall.tiles.size(); ++i) {
         const PixelRect& rect = options.wall.tiles[i].onWall;
         welcome.tiles.push_back({options.wall.tiles[i].name, hosts[i], static_cast<std::uint32_t>(i), rect.x,
@@ -84,44 +105,102 @@ protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& datas
 // What a rank holds while it runs; made in this order, taken down in reverse.
 struct Rank {
     std::unique_ptr<GlContext> gl;
+    std::unique_ptr<TileOutput> output;
     std::unique_ptr<TilePipeline> pipeline;
     std::unique_ptr<Gateway> gateway;
 };
 
+// Of the ranks on this host; Open MPI says so.
+std::size_t localRank() {
+    const char* rank = std::getenv("OMPI_COMM_WORLD_LOCAL_RANK");
+    return rank ? static_cast<std::size_t>(std::strtoul(rank, nullptr, 10)) : 0;
+}
+
+// The GL that draws the tile, and the way to whoever looks at it.
+Result<void> prepareOutput(Rank& rank, const ServerOptions& options, std::size_t number) {
+    Tile tile = options.wall.tiles[number];
+    if (options.pattern != Pattern::none && options.pattern != Pattern::blend) tile.blend = {};
+    WallWindow* shown = nullptr;
+    if (options.window) {
+        ASSIGN_OR_RETURN(std::unique_ptr<WallWindow> window,
+                         WallWindow::open(tile, options.wall.windowPlace(number)));
+        shown = window.get();
+        rank.gl = std::move(window);
+    } else {
+        ASSIGN_OR_RETURN(rank.gl, GlContext::createHeadless(localRank()));
+    }
+    ASSIGN_OR_RETURN(rank.output, TileOutput::create(tile, shown));
+    return {};
+}
+
 Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& dataset, const Sync& sync,
                      const std::vector<std::string>& hosts) {
-    ASSIGN_OR_RETURN(rank.gl, GlContext::createHeadless());
-    ASSIGN_OR_RETURN(
-        rank.pipeline,
-        TilePipeline::create(dataset, options.wall, static_cast<std::size_t>(sync.rank()), options.settings));
+    const auto number = static_cast<std::size_t>(sync.rank());
+    RETURN_IF_ERROR(prepareOutput(rank, options, number));
+    ASSIGN_OR_RETURN(rank.pipeline, TilePipeline::create(dataset, options.wall, number, options.settings));
     if (sync.rank() != 0) return {};
     ASSIGN_OR_RETURN(rank.gateway,
                      Gateway::listen(options.address, options.port, makeWelcome(options, dataset, hosts)));
     return {};
 }
 
-void announce(const ServerOptions& options, const Dataset& dataset, const Rank& rank) {
+// Which host draws what, and why.
+void announceTiles(const Wall& wall, const std::vector<std::string>& hosts) {
+    const auto named = [](const Tile& tile) { return !tile.host.empty(); };
+    const bool byHost = std::any_of(wall.tiles.begin(), wall.tiles.end(), named);
+    std::string tiles;
+    for (std::size_t i = 0; i < hosts.size(); ++i)
+        tiles += fmt::format("{}{} on {}", i > 0 ? ", " : "", wall.tiles[i].name, hosts[i]);
+    std::printf("iwalk-server: tiles %s: %s\n", byHost ? "by the wall file's hosts" : "by rank",
+                tiles.c_str());
+}
+
+void announce(const ServerOptions& options, const Dataset& dataset, const Rank& rank,
+              const std::vector<std::string>& hosts, bool swapGroup) {
     std::printf("iwalk-server: %s: %llu triangles, %s; %s\n", options.dataset.c_str(),
                 static_cast<unsigned long long>(dataset.manifest.triangles),
                 formatBytes(dataset.bytes).c_str(), rank.gl->renderer().c_str());
-    std::printf("iwalk-server: wall of %dx%d px on %zu tiles, listening on %s:%u\n", options.wall.width,
-                options.wall.height, options.wall.tiles.size(), options.address.c_str(),
-                rank.gateway->port());
+    announceTiles(options.wall, hosts);
+    if (swapGroup) std::printf("iwalk-server: the windows swap together (NV_swap_group)\n");
+    const Wall& wall = options.wall;
+    const std::string size = wall.freeScreens.empty()
+                                 ? fmt::format("{}x{} px", wall.width, wall.height)
+                                 : fmt::format("{} free screens", wall.freeScreens.size());
+    std::printf("iwalk-server: wall of %s on %zu tiles, listening on %s:%u\n", size.c_str(),
+                wall.tiles.size(), options.address.c_str(), rank.gateway->port());
     std::fflush(stdout);
 }
 
 int serve(Sync& sync, ServerOptions& options) {
     Dataset dataset;
     if (!allFine(sync, readInputs(options, dataset, sync))) return EXIT_FAILURE;
-    const std::vector<std::string> hosts = sync.gatherText(hostName());
+    const Result<std::vector<std::string>> hosts = placeRanks(options.wall, sync);
+    if (!allFine(sync, hosts.ok() ? Result<void>() : hosts.error())) return EXIT_FAILURE;
     logTo(fmt::format("iwalk-server: rank {} on {}", sync.rank(), hostName()));
     Rank rank;
-    if (!allFine(sync, prepare(rank, options, dataset, sync, hosts))) return EXIT_FAILURE;
-    if (sync.rank() == 0) announce(options, dataset, rank);
-    runFrames({sync, *rank.pipeline, rank.gateway.get(),
+    if (!allFine(sync, prepare(rank, options, dataset, sync, *hosts))) return EXIT_FAILURE;
+    const SwapGroup together(rank.output->swapGroupDriver(), [&](bool mine) { return sync.agree(mine); });
+    if (sync.rank() == 0) announce(options, dataset, rank, *hosts, together.joined());
+    runFrames({sync, *rank.pipeline, *rank.output, rank.gateway.get(),
                options.wall.tiles[static_cast<std::size_t>(sync.rank())].name, options.outputDirectory,
-               nearPlane(options.settings, dataset.manifest), stopRequested});
+               sync.rank() == 0 ? options.resumeFile : "", nearPlane(options.settings, dataset.manifest),
+               stopRequested});
     return EXIT_SUCCESS;
+}
+
+int servePattern(Sync& sync, ServerOptions& options) {
+    if (!allFine(sync, readWall(options, sync))) return EXIT_FAILURE;
+    const Result<std::vector<std::string>> hosts = placeRanks(options.wall, sync);
+    if (!allFine(sync, hosts.ok() ? Result<void>() : hosts.error())) return EXIT_FAILURE;
+    const auto number = static_cast<std::size_t>(sync.rank());
+    Rank rank;
+    if (!allFine(sync, prepareOutput(rank, options, number))) return EXIT_FAILURE;
+    const std::string file =
+        options.window ? "" : tileFile(options.outputDirectory, 0, options.wall.tiles[number].name);
+    const Result<void> shown =
+        showPattern({sync, *rank.output, drawPattern(options.pattern, options.wall, number, hostName()), file,
+                     stopRequested});
+    return allFine(sync, shown) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 int printTiles(ServerOptions& options) {
@@ -153,5 +232,5 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "iwalk-server: %s\n", sync.error().message.c_str());
         return EXIT_FAILURE;
     }
-    return serve(**sync, options);
+    return options.pattern == Pattern::none ? serve(**sync, options) : servePattern(**sync, options);
 }

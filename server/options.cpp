@@ -35,6 +35,9 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
     app.option_defaults()->always_capture_default();
     app.set_version_flag("--version", std::string("iwalk-server ") + kVersion);
     std::string listen = kDefaultListen, present = "none";
+    std::map<std::string, std::string> given;
+    const std::map<std::string, Pattern> patterns{
+        {"grid", Pattern::grid}, {"blend", Pattern::blend}, {"identity", Pattern::identity}};
     app.add_option("--dataset", options.dataset, "directory that iwalk-preprocess made; every rank reads it")
         ->type_name("DIR");
     app.add_option("--wall", options.wallFile, "TOML file of the wall; tile i is drawn by rank i")
@@ -42,16 +45,27 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
         ->type_name("FILE");
     app.add_option("--listen", listen, "where rank 0 waits for clients; port 0 takes any free one")
         ->type_name("ADDR:PORT");
-    app.add_option("--present", present,
-                   "where finished tiles go: none (clients may still capture) or file (PNG)")
-        ->check(CLI::IsMember({"none", "file"}))
-        ->type_name("none|file");
+    app.add_option(
+           "--present", present,
+           "where finished tiles go: none (clients may still capture), file (PNG), or window: on X displays, "
+           "as the wall file says; Escape ends the wall")
+        ->check(CLI::IsMember({"none", "file", "window"}))
+        ->type_name("none|file|window");
     app.add_option("--out", options.outputDirectory, "for --present file: writes DIR/frame-000000/TILE.png")
         ->type_name("DIR");
 
+    app.add_option("--resume", options.resumeFile,
+                   "rank 0 keeps the wall's last camera in this file, and begins with it when it is there")
+        ->type_name("FILE");
+    app.add_option("--pattern", options.pattern,
+                   "shows a test pattern instead of a dataset, with --present window or file: grid (lines "
+                   "and circles "
+                   "across the wall), blend (grey bands), identity (names of tiles)")
+        ->transform(CLI::CheckedTransformer(patterns))
+        ->type_name("grid|blend|identity")
+        ->default_str("");
     app.add_flag("--tiles", options.tilesOnly, "prints how many tiles, and so ranks, the wall has, and ends");
 
-    std::map<std::string, std::string> given;
     for (const SettingInfo& setting : settingTable())
         app.add_option(std::string("--") + setting.name, given[setting.name], setting.help)
             ->type_name(setting.form)
@@ -59,11 +73,15 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
             ->default_str(settingText(options.settings, setting.name));
     try {
         app.parse(argc, argv);
-        if (options.dataset.empty() && !options.tilesOnly) throw CLI::RequiredError("--dataset");
+        const bool pattern = options.pattern != Pattern::none;
+        if (options.dataset.empty() && !options.tilesOnly && !pattern) throw CLI::RequiredError("--dataset");
         if (Result<void> parsed = parseListen(listen, options); !parsed)
             throw CLI::ValidationError(parsed.error().message);
         if ((present == "file") == options.outputDirectory.empty())
             throw CLI::ValidationError("--present file and --out DIR go together");
+        if (pattern && (present == "none" || !options.dataset.empty()))
+            throw CLI::ValidationError("--pattern wants --present window or file, and no dataset");
+        options.window = present == "window";
         for (const auto& [name, text] : given) {
             if (text.empty()) continue;
             options.given.emplace_back(name, text);

@@ -7,6 +7,7 @@
 
 #include "common/result.hpp"
 #include "common/settings.hpp"
+#include "server/present/patterns.hpp"
 #include "server/wall/wall.hpp"
 
 namespace iwalk {
@@ -17,6 +18,9 @@ struct ServerOptions {
     std::string address = "127.0.0.1";  // to listen at (rank 0)
     std::uint16_t port = 0;             // 0: any free one
     std::string outputDirectory;        // of --present file; empty: tiles are not written
+    std::string resumeFile;             // empty: none
+    bool window = false;                // --present window
+    Pattern pattern = Pattern::none;    // instead of a dataset
     bool tilesOnly = false;             // just say how many tiles the wall has
     Settings settings;
     Wall wall;

@@ -5,9 +5,10 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 
+#include "common/canvas.hpp"
 #include "common/dataset/page.hpp"
 #include "common/dataset/page_files.hpp"
-#include "preprocess/picture/canvas.hpp"
+#include "common/font.hpp"
 
 namespace iwalk {
 namespace {
@@ -169,11 +170,11 @@ void drawCell(const LatticeBox& cell, const Color& color, const View& view, Canv
 }
 
 void drawLegend(const OctreePicture& picture, Canvas& canvas) {
-    constexpr int kScale = 3, kRow = 24, kLeft = 20;
+    constexpr int kScale = 2, kRow = 24, kLeft = 20;
     int y = canvas.image().height - kRow * static_cast<int>(picture.deepest - picture.shallowest + 1);
     for (unsigned depth = picture.shallowest; depth <= picture.deepest; ++depth, y += kRow) {
-        canvas.rectangle(kLeft, y, 2 * kRow, 5 * kScale, depthColor(picture, depth));
-        canvas.number(kLeft + 2 * kRow + 8, y, kScale, depth, kWhite);
+        canvas.rectangle(kLeft, y, 2 * kRow, kLetterHeight * kScale, depthColor(picture, depth));
+        canvas.text(kLeft + 2 * kRow + 8, y, kScale, std::to_string(depth), kWhite);
     }
 }
 

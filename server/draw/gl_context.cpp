@@ -5,6 +5,8 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <string_view>
 #include <vector>
 
 namespace iwalk {
@@ -18,25 +20,31 @@ class EglContext : public GlContext {
         eglDestroyContext(display_, context_);
         eglTerminate(display_);
     }
-    std::string renderer() const override {
-        return fmt::format("{}, OpenGL {}", reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
-                           reinterpret_cast<const char*>(glGetString(GL_VERSION)));
-    }
 
   private:
     EGLDisplay display_;
     EGLContext context_;
 };
 
+// A device that cannot be asked is taken for one.
+bool isGpu(EGLDeviceEXT device) {
+    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_query")) return true;
+    const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    return !extensions ||
+           std::string_view(extensions).find("EGL_MESA_device_software") == std::string_view::npos;
+}
+
 // Displays to try, best first.
-std::vector<EGLDisplay> headlessDisplays() {
+std::vector<EGLDisplay> headlessDisplays(std::size_t localRank) {
     std::vector<EGLDisplay> displays;
     if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
         epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
         EGLDeviceEXT devices[16];
         EGLint count = 0;
         eglQueryDevicesEXT(16, devices, &count);
-        for (EGLint i = 0; i < count; ++i)
+        std::vector<bool> gpus;
+        for (EGLint i = 0; i < count; ++i) gpus.push_back(isGpu(devices[i]));
+        for (const std::size_t i : deviceOrder(gpus, localRank))
             displays.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
     }
     if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
@@ -59,8 +67,23 @@ EGLContext createContext(EGLDisplay display) {
 
 }  // namespace
 
-Result<std::unique_ptr<GlContext>> GlContext::createHeadless() {
-    for (const EGLDisplay display : headlessDisplays()) {
+std::string GlContext::renderer() const {
+    return fmt::format("{}, OpenGL {}", reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
+                       reinterpret_cast<const char*>(glGetString(GL_VERSION)));
+}
+
+std::vector<std::size_t> deviceOrder(const std::vector<bool>& gpus, std::size_t localRank) {
+    std::vector<std::size_t> order, others;
+    for (std::size_t i = 0; i < gpus.size(); ++i) (gpus[i] ? order : others).push_back(i);
+    if (!order.empty())
+        std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(localRank % order.size()),
+                    order.end());
+    order.insert(order.end(), others.begin(), others.end());
+    return order;
+}
+
+Result<std::unique_ptr<GlContext>> GlContext::createHeadless(std::size_t localRank) {
+    for (const EGLDisplay display : headlessDisplays(localRank)) {
         if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) continue;
         const EGLContext context = createContext(display);
         if (context != EGL_NO_CONTEXT && eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))

@@ -43,6 +43,7 @@ class GlRenderer : public Renderer {
     glm::ivec2 readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
     glm::ivec2 bindBlock() override;
     ColorImage readColor() override;
+    std::uint32_t colorTexture() const override { return color_; }
     DepthImage readDepth() override;
 
   private:

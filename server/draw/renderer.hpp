@@ -79,6 +79,7 @@ class Renderer {
     virtual glm::ivec2 bindBlock() = 0;
 
     virtual ColorImage readColor() = 0;
+    virtual std::uint32_t colorTexture() const = 0;  // GL's, RGBA8, row 0 on top
     // Eye-space depth in model units, 0 where there is no surface; of a frame with captureDepth.
     virtual DepthImage readDepth() = 0;
 };

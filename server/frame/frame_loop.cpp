@@ -4,6 +4,7 @@
 #include <optional>
 #include <thread>
 
+#include "server/frame/last_camera.hpp"
 #include "server/present/tile_writer.hpp"
 
 namespace iwalk {
@@ -13,8 +14,9 @@ using Clock = std::chrono::steady_clock;
 
 class FrameLoop {
   public:
-    explicit FrameLoop(const FrameLoopParts& parts) : parts_(parts) {
-        parts_.sync.setIdleWork([this] { passCapturesOn(); });
+    explicit FrameLoop(const FrameLoopParts& parts)
+        : parts_(parts), lastCamera_(parts.resumeFile), resumed_(lastCamera_.load()) {
+        parts_.sync.setIdleWork([this] { idle(); });
     }
     ~FrameLoop() { parts_.sync.setIdleWork({}); }
 
@@ -26,13 +28,17 @@ class FrameLoop {
   private:
     FrameState nextState();
     FrameState waitForRequest();
+    std::optional<protocol::CameraRequest> nextRequest();
     void drawFrame(const FrameState& state);
     void present(const FrameState& state);
     void report(const FrameState& state, protocol::TileStats stats, Clock::time_point swap);
+    void idle();
     void passCapturesOn();
 
     const FrameLoopParts& parts_;
     TileWriter writer_;
+    LastCamera lastCamera_;          // rank 0's
+    std::optional<Camera> resumed_;  // to be drawn before a client asks for anything
     std::uint64_t frame_ = 0;
     std::optional<Clock::time_point> lastSwap_;
 };
@@ -44,13 +50,23 @@ FrameState FrameLoop::nextState() {
     return state;
 }
 
+std::optional<protocol::CameraRequest> FrameLoop::nextRequest() {
+    std::optional<protocol::CameraRequest> request = parts_.gateway->nextRequest();
+    if (!request && resumed_) request = protocol::CameraRequest{0, 0, *resumed_};
+    resumed_.reset();
+    if (request) lastCamera_.shows(request->camera, Clock::now());
+    lastCamera_.keep(Clock::now());
+    return request;
+}
+
 // Rank 0 waits for its clients here, the others in broadcast().
 FrameState FrameLoop::waitForRequest() {
     FrameState state;
     std::optional<protocol::CameraRequest> request;
     int pauseUs = 50;
-    while (!parts_.stop && !(request = parts_.gateway->nextRequest())) {
-        passCapturesOn();
+    const auto stop = [this] { return parts_.stop || parts_.sync.askedToStop(); };
+    while (!stop() && !(request = nextRequest())) {
+        idle();
         std::this_thread::sleep_for(std::chrono::microseconds(pauseUs));
         pauseUs = std::min(1000, pauseUs * 2);
     }
@@ -74,24 +90,29 @@ FrameState FrameLoop::waitForRequest() {
 
 void FrameLoop::drawFrame(const FrameState& state) {
     protocol::TileStats stats = parts_.pipeline.draw(state);
+    parts_.output.prepare(parts_.pipeline.renderer().colorTexture());
     stats.barrierWaitMs = parts_.sync.barrier();
+    parts_.output.show();
     const Clock::time_point swap = Clock::now();
     present(state);
     report(state, stats, swap);
     ++frame_;
 }
 
+// Files are what is shown, captures what was drawn: the same but for projectors' blending.
 void FrameLoop::present(const FrameState& state) {
-    const bool capture = state.flags & (protocol::kCaptureColor | protocol::kCaptureDepth);
-    if (!capture && parts_.outputDirectory.empty()) return;
     TilePicture picture;
     picture.frame = state.frame;
+    if (!parts_.outputDirectory.empty()) {
+        picture.file = tileFile(parts_.outputDirectory, state.frame, parts_.tileName);
+        picture.color = parts_.output.read();
+        writer_.put(picture);
+    }
+    if (!(state.flags & (protocol::kCaptureColor | protocol::kCaptureDepth))) return;
+    picture.file.clear();
+    picture.capture = true;
     picture.sequence = state.sequence;
     picture.tile = static_cast<std::uint32_t>(parts_.sync.rank());
-    picture.capture = capture;
-    if (!parts_.outputDirectory.empty())
-        picture.file =
-            fmt::format("{}/frame-{:06}/{}.png", parts_.outputDirectory, state.frame, parts_.tileName);
     picture.color = parts_.pipeline.renderer().readColor();
     if (state.flags & protocol::kCaptureDepth) picture.depth = parts_.pipeline.renderer().readDepth();
     writer_.put(std::move(picture));
@@ -111,8 +132,13 @@ void FrameLoop::report(const FrameState& state, protocol::TileStats stats, Clock
     passCapturesOn();
 }
 
-// Captures go from this rank's writer to rank 0, and from there through the gateway, whenever a wait leaves
-// time.
+// Whenever a wait leaves time.
+void FrameLoop::idle() {
+    passCapturesOn();
+    if (parts_.output.closed()) parts_.sync.askToStop();
+}
+
+// Captures go from this rank's writer to rank 0, and from there through the gateway.
 void FrameLoop::passCapturesOn() {
     for (protocol::TileImage& tile : writer_.encoded()) parts_.sync.sendToRank0(std::move(tile));
     for (protocol::TileImage& tile : parts_.sync.poll())

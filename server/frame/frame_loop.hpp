@@ -5,6 +5,7 @@
 
 #include "server/frame/tile_pipeline.hpp"
 #include "server/gateway/gateway.hpp"
+#include "server/present/tile_output.hpp"
 #include "server/sync/sync.hpp"
 
 namespace iwalk {
@@ -13,10 +14,12 @@ namespace iwalk {
 struct FrameLoopParts {
     Sync& sync;
     TilePipeline& pipeline;
+    TileOutput& output;
     Gateway* gateway = nullptr;  // on rank 0
     std::string tileName;
-    std::string outputDirectory;    // --present file: where tiles are written; empty: nowhere
-    double near = 0;                // model units
+    std::string outputDirectory;  // --present file: where tiles are written; empty: nowhere
+    std::string resumeFile;       // rank 0 begins with its camera, and keeps the last one there; empty: none
+    double near = 0;              // model units
     const std::atomic<bool>& stop;  // rank 0 ends the wall when it is set
 };
 

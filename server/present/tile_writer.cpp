@@ -10,6 +10,10 @@
 
 namespace iwalk {
 
+std::string tileFile(const std::string& directory, std::uint64_t frame, const std::string& tile) {
+    return fmt::format("{}/frame-{:06}/{}.png", directory, frame, tile);
+}
+
 TileWriter::TileWriter() : thread_([this] { run(); }) {}
 
 TileWriter::~TileWriter() {

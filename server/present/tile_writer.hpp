@@ -24,6 +24,9 @@ struct TilePicture {
     std::optional<DepthImage> depth;
 };
 
+// Of --present file.
+std::string tileFile(const std::string& directory, std::uint64_t frame, const std::string& tile);
+
 // Compresses and writes pictures on a thread of its own, so that drawing goes on. Holds at most kMaxWaiting
 // pictures; put() waits when there are more.
 class TileWriter {

@@ -14,7 +14,7 @@
 namespace iwalk {
 namespace {
 
-constexpr int kTileTag = 1;
+constexpr int kTileTag = 1, kStopTag = 2;
 constexpr std::uint32_t kTileMagic = 0x4C545749;  // "IWTL"
 constexpr std::uint64_t kMaxTileBytes = std::uint64_t{1} << 30;
 
@@ -79,6 +79,10 @@ class MpiSync : public Sync {
     }
 
     std::vector<std::string> gatherText(const std::string& mine) override;
+    void renumber(int rank) override;
+
+    void askToStop() override;
+    bool askedToStop() override;
 
     void broadcast(FrameState& state) override {
         MPI_Request request;
@@ -123,24 +127,54 @@ class MpiSync : public Sync {
     }
     void dropSent();
     void drain();
+    void takeStop();
 
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     std::function<void()> idleWork_;
     std::list<Outgoing> outgoing_;          // a list: MPI reads the bytes where they are
     std::vector<protocol::TileImage> own_;  // rank 0's, which need no MPI
+    bool stopAsked_ = false;
 };
 
 std::vector<std::string> MpiSync::gatherText(const std::string& mine) {
     constexpr int kSlot = kMaxText + 1;
-    std::vector<char> slot(kSlot, '\0'), all(rank_ == 0 ? kSlot * static_cast<std::size_t>(size_) : 0);
+    std::vector<char> slot(kSlot, '\0'), all(kSlot * static_cast<std::size_t>(size_));
     std::memcpy(slot.data(), mine.data(), std::min(mine.size(), kMaxText));
     MPI_Request request;
-    must(MPI_Igather(slot.data(), kSlot, MPI_CHAR, all.data(), kSlot, MPI_CHAR, 0, world_, &request));
+    must(MPI_Iallgather(slot.data(), kSlot, MPI_CHAR, all.data(), kSlot, MPI_CHAR, world_, &request));
     finish(request);
     std::vector<std::string> texts;
     for (std::size_t at = 0; at < all.size(); at += kSlot) texts.emplace_back(all.data() + at);
     return texts;
+}
+
+void MpiSync::renumber(int rank) {
+    MPI_Comm renumbered = MPI_COMM_NULL;
+    must(MPI_Comm_split(world_, 0, rank, &renumbered));
+    must(MPI_Comm_free(&world_));
+    world_ = renumbered;
+    must(MPI_Comm_rank(world_, &rank_));
+    CHECK_OP(rank_, ==, rank);
+}
+
+void MpiSync::askToStop() {
+    if (std::exchange(stopAsked_, true) || rank_ == 0) return;
+    Outgoing& outgoing = outgoing_.emplace_back();
+    must(MPI_Isend(outgoing.bytes.data(), 0, MPI_BYTE, 0, kStopTag, world_, &outgoing.request));
+}
+
+bool MpiSync::askedToStop() {
+    takeStop();
+    return stopAsked_;
+}
+
+void MpiSync::takeStop() {
+    int waiting = 0;
+    must(MPI_Iprobe(MPI_ANY_SOURCE, kStopTag, world_, &waiting, MPI_STATUS_IGNORE));
+    if (!waiting) return;
+    must(MPI_Recv(nullptr, 0, MPI_BYTE, MPI_ANY_SOURCE, kStopTag, world_, MPI_STATUS_IGNORE));  // it is there
+    stopAsked_ = true;
 }
 
 void MpiSync::sendToRank0(protocol::TileImage tile) {
@@ -205,6 +239,7 @@ void MpiSync::drain() {
     Patience patience;
     for (int done = 0; must(MPI_Test(&request, &done, MPI_STATUS_IGNORE)), !done;) {
         poll();
+        takeStop();
         patience.wait();
     }
 }

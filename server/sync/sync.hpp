@@ -29,8 +29,14 @@ class Sync {
 
     // True when every rank says true.
     virtual bool agree(bool mine) = 0;
-    // Every rank's text (its first kMaxText bytes), by rank, on rank 0; empty elsewhere.
+    // Every rank's text (its first kMaxText bytes), by rank, on every rank.
     virtual std::vector<std::string> gatherText(const std::string& mine) = 0;
+    // Gives each rank another number, from 0 to size() - 1 and each once; rank() says so from then on.
+    virtual void renumber(int rank) = 0;
+
+    // Any rank: asks rank 0 to end the wall. Rank 0: whether one has asked. Neither waits.
+    virtual void askToStop() = 0;
+    virtual bool askedToStop() = 0;
 
     // Gives rank 0's frame state to all.
     virtual void broadcast(FrameState& state) = 0;

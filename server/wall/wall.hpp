@@ -2,6 +2,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,25 +24,43 @@ struct Screen {
     int width = 0, height = 0;                          // px
 };
 
-// What one server draws.
+// How a projector's picture fades out where its neighbours show the same pixels.
+struct Blend {
+    int left = 0, right = 0, top = 0, bottom = 0;  // px shared with the neighbour on that side
+    double gamma = 2.2;                            // light is the pixel's value to this power
+    bool any() const { return left > 0 || right > 0 || top > 0 || bottom > 0; }
+};
+
+// What one server draws, and where it is shown. Empty texts: the wall file does not say.
 struct Tile {
     std::string name;  // letters, digits, '.', '_' and '-'; unique
     std::size_t screen = 0;
     PixelRect onScreen;  // px of its screen
-    PixelRect onWall;    // px of the wall
+    PixelRect onWall;    // px of the wall; free screens lie side by side there, in the file's order
+    Blend blend{};
+    std::string host{};                  // where its server is to run
+    std::string display{};               // X display of its window, as in DISPLAY
+    std::string monitor{};               // that its window fills, by the name that xrandr gives it
+    std::optional<glm::ivec2> window{};  // place of its window on the display, px
 };
 
-// A wall file, understood. A regular wall is one screen, bezels included, cut into tiles.
+// A wall file, understood. A regular wall is one screen, bezels included, cut into tiles; free screens have
+// places of their own, and each may be cut into tiles, too.
 struct Wall {
-    int width = 0, height = 0;  // px, bezels included
-    int rows = 0, columns = 0;
-    glm::ivec2 tilePx{0}, bezelPx{0};
-    std::vector<Tile> tiles;  // row by row from the top; tile i is for rank i
+    int width = 0, height = 0;  // px, bezels included; of free screens side by side
+    std::vector<Tile> tiles;    // row by row from the top, screen by screen; tile i is for rank i
     std::vector<std::pair<std::string, std::string>>
-        settings;  // of its [settings] table: name, value as text
+        settings;                     // of its [settings] table: name, value as text
+    double pixelAspect = 1;           // of a regular wall: a pixel's width / height
+    std::vector<Screen> freeScreens;  // none: the wall is regular
 
-    // The wall's screens for a camera whose vertical field of view (degrees) spans the whole wall.
+    // The wall's screens for a camera. In a regular wall its vertical field of view (degrees) spans the whole
+    // wall; free screens are where they are.
     std::vector<Screen> screens(double fovY) const;
+
+    // Where a tile's window stands on its display, px: where the file says, or as on the wall, from the top
+    // left corner of all tiles that share host and display.
+    glm::ivec2 windowPlace(std::size_t tile) const;
 };
 
 // Reads a TOML wall file (config/). Errors name the file, the line and the column.

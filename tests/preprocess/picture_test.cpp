@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "common/canvas.hpp"
 #include "common/dataset/hierarchy.hpp"
-#include "preprocess/picture/canvas.hpp"
 #include "preprocess/picture/octree_picture.hpp"
 #include "tests/common/temp_directory.hpp"
 #include "tests/preprocess/soup.hpp"
@@ -43,8 +43,8 @@ TEST(CanvasTest, SurfacesHideLines) {
     EXPECT_EQ(countOf(canvas.image(), kRed), before);
     canvas.line({0, 4, 5.5}, {20, 4, 5.5}, kBlue, 1);
     EXPECT_LT(countOf(canvas.image(), kRed), before);
-    canvas.number(2, 8, 1, 1, kGreen);
-    EXPECT_EQ(countOf(canvas.image(), kGreen), 8);
+    canvas.text(2, 8, 1, "1", kGreen);
+    EXPECT_EQ(countOf(canvas.image(), kGreen), 10);
 }
 
 TEST(OctreePictureTest, ShowsModelAndCells) {

@@ -29,6 +29,16 @@ nothing_runs() {
 }
 nothing_runs
 
+# Free screens have no common picture.
+{
+    printf '[wall]\neye = [0, 1.2, 0]\n'
+    printf '[[screen]]\nname = "%s"\ntop_left = [%s]\ntop_right = [%s]\nbottom_left = [%s]\ntile_px = [160, 120]\n' \
+        front '-1, 2, -1' '1, 2, -1' '-1, 0, -1' side '1, 2, -1' '1, 2, 1' '1, 0, -1'
+} >cave.toml
+"$source/scripts/wall" "$work/dataset" --wall cave.toml --bin "$bin" --path path.json --capture cave || complain "no wall of free screens"
+[ -s cave/frame-000005/front.png ] && [ -s cave/frame-000005/side.png ] || complain "no pictures of free screens"
+[ ! -e cave/frame-000005/wall.png ] || complain "free screens were stitched"
+
 # A wall of its own for the clients below.
 start_wall() {
     "${launch[@]}" 4 "$bin/iwalk-server" --dataset "$work/$1" --wall wall.toml --listen 127.0.0.1:0 \
@@ -72,6 +82,29 @@ fly second || complain "nobody takes over from a vanished controller"
 same_as_before second "bad clients"
 exec 8>&- 9>&-
 stop_wall
+
+# A server that dies takes the wall with it; --supervise brings it back at the same address, with the same picture.
+"$source/scripts/wall" "$work/dataset" --wall wall.toml --bin "$bin" --supervise -- --present file --out "$work/shown" \
+    >"$work/log" 2>"$work/errors" &
+wall=$!
+until address=$(sed -n 's/.*listening on //p' "$work/log") && [ -n "$address" ]; do
+    kill -0 "$wall" || { cat "$work/errors" >&2; exit 1; }
+    sleep 0.05
+done
+echo "{\"fov_y_deg\": 50, \"frames\": [${frames%%\},*}}]}" >one.json
+fly before one.json || complain "a supervised wall does not fly"
+sleep 1  # the camera rests, and is kept
+rm -rf shown
+victim=$(pgrep -f "iwalk-server.*$work/shown" | tail -1)
+kill -KILL "$victim"
+for _ in $(seq 200); do [ "$(ls shown/frame-000000/*.png 2>/dev/null | wc -l)" = 4 ] && break; sleep 0.1; done
+for tile in 0-0 0-1 1-0 1-1; do
+    "$bin/iwalk-compare" "before/frame-000000/tile-$tile.png" "shown/frame-000000/tile-$tile.png" >/dev/null ||
+        complain "tile $tile is not as it was before a server died: $(cat "$work/errors")"
+done
+fly after one.json || complain "a wall that was started again does not take its clients"
+stop_wall
+nothing_runs
 
 # A page with a flipped byte: the wall draws on without it and says so.
 cp -r dataset flipped

@@ -1,26 +1,15 @@
-#include "preprocess/picture/canvas.hpp"
+#include "common/canvas.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <string>
+
+#include "common/font.hpp"
 
 namespace iwalk {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-
-// Digits of 3 x 5 pixels, rows from the top, the leftmost pixel in the highest bit.
-constexpr std::array<std::array<std::uint8_t, 5>, 10> kDigits{{{7, 5, 5, 5, 7},
-                                                               {2, 6, 2, 2, 7},
-                                                               {7, 1, 7, 4, 7},
-                                                               {7, 1, 7, 1, 7},
-                                                               {5, 5, 7, 1, 1},
-                                                               {7, 4, 7, 1, 7},
-                                                               {7, 4, 7, 5, 7},
-                                                               {7, 1, 2, 2, 2},
-                                                               {7, 5, 7, 5, 7},
-                                                               {7, 5, 7, 1, 7}}};
 
 // Twice the signed area of a, b and the point (x, y).
 double area(const glm::dvec3& a, const glm::dvec3& b, double x, double y) {
@@ -103,16 +92,15 @@ void Canvas::rectangle(int x, int y, int width, int height, const Color& color) 
     }
 }
 
-void Canvas::number(int x, int y, int scale, unsigned value, const Color& color) {
-    for (const char digit : std::to_string(value)) {
-        const auto& rows = kDigits[static_cast<std::size_t>(digit - '0')];
-        for (int row = 0; row < 5; ++row) {
-            for (int column = 0; column < 3; ++column) {
-                if ((rows[static_cast<std::size_t>(row)] >> (2 - column) & 1) == 0) continue;
+void Canvas::text(int x, int y, int scale, std::string_view letters, const Color& color) {
+    for (const char letter : letters) {
+        for (int row = 0; row < kLetterHeight; ++row) {
+            for (int column = 0; column < kLetterWidth; ++column) {
+                if (!letterPixel(letter, column, row)) continue;
                 rectangle(x + column * scale, y + row * scale, scale, scale, color);
             }
         }
-        x += 4 * scale;
+        x += kLetterStep * scale;
     }
 }
 

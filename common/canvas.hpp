@@ -3,6 +3,7 @@
 #include <array>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "common/image.hpp"
@@ -22,9 +23,9 @@ class Canvas {
     // Shows where no triangle is nearer by more than `slack`. After all triangles; of lines at one place the
     // nearest shows, and of those as near the last.
     void line(const glm::dvec3& from, const glm::dvec3& to, const Color& color, double slack);
-    // A filled rectangle over everything; and a number, 5 `scale` px high.
+    // A filled rectangle over everything; and text, 7 `scale` px high (common/font.hpp).
     void rectangle(int x, int y, int width, int height, const Color& color);
-    void number(int x, int y, int scale, unsigned value, const Color& color);
+    void text(int x, int y, int scale, std::string_view letters, const Color& color);
 
     const ColorImage& image() const { return image_; }
 
