@@ -40,7 +40,7 @@ class GlRenderer : public Renderer {
     void finish() override;
     void wait() override;
     glm::ivec2 readBlockDepths(std::vector<float>& depths) override;
-    glm::ivec2 readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
+    void readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
     glm::ivec2 bindBlock() override;
     ColorImage readColor() override;
     DepthImage readDepth() override;
@@ -51,8 +51,9 @@ class GlRenderer : public Renderer {
     std::uint32_t addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
                           const glm::dvec3& origin, std::uint32_t rank);
     void addTints(const ResidentPage& page, std::span<const DrawnRange> ranges);
-    glm::ivec2 blockSize() const {
-        return {block_.part.x + block_.part.width - block_.x, block_.part.y + block_.part.height - block_.y};
+    // The block's part in its framebuffer.
+    PixelRect inFramebuffer() const {
+        return {block_.part.x - block_.x, block_.part.y - block_.y, block_.part.width, block_.part.height};
     }
     void startNumbersAgain();
     void useVisibilityProgram(bool wide);
@@ -165,6 +166,7 @@ void GlRenderer::beginFrame(const TileView& view) {
     };
     const float background[] = {channel(16), channel(8), channel(0), 1};
     const float nothing[] = {0, 0, 0, 0};
+    glDisable(GL_SCISSOR_TEST);
     glClearNamedFramebufferfv(shaded_, GL_COLOR, 0, background);
     if (view.captureDepth) glClearNamedFramebufferfv(shaded_, GL_COLOR, 1, nothing);
 }
@@ -175,6 +177,7 @@ void GlRenderer::beginBlock(const Block& block) {
     slots_.clear();
     tints_.clear();
     unshaded_ = 0;
+    glDisable(GL_SCISSOR_TEST);
     visible_.clear();
 }
 
@@ -201,7 +204,8 @@ void GlRenderer::useVisibilityProgram(bool wide) {
     const Window window = windowFor(view_.screenWidth, view_.screenHeight, block_);
     const float half = static_cast<float>(window.edge) / 2;
     glViewport(window.x - block_.x, window.y - block_.y, window.edge, window.edge);
-    glScissor(block_.part.x - block_.x, block_.part.y - block_.y, block_.part.width, block_.part.height);
+    const PixelRect part = inFramebuffer();
+    glScissor(part.x, part.y, part.width, part.height);
     glUniform3f(kWindow, static_cast<float>(window.x) + half, static_cast<float>(window.y) + half, half);
 }
 
@@ -254,12 +258,14 @@ void GlRenderer::beginRest() {
 }
 
 glm::ivec2 GlRenderer::bindBlock() {
+    const PixelRect part = inFramebuffer();
     visible_.bind();
-    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(part.x, part.y, part.width, part.height);
     glEnable(GL_DEPTH_TEST);
-    glViewport(0, 0, blockSize().x, blockSize().y);
+    glViewport(part.x, part.y, part.width, part.height);
     used_ = 0;
-    return blockSize();
+    return {part.width, part.height};
 }
 
 void GlRenderer::wait() {
@@ -267,13 +273,12 @@ void GlRenderer::wait() {
 }
 
 glm::ivec2 GlRenderer::readBlockDepths(std::vector<float>& depths) {
-    visible_.readDepths(blockSize().x, blockSize().y, depths);
-    return blockSize();
+    visible_.readDepths(inFramebuffer(), depths);
+    return {block_.part.width, block_.part.height};
 }
 
-glm::ivec2 GlRenderer::readBlockTriangles(std::vector<std::uint32_t>& numbers) {
-    visible_.readNumbers(blockSize().x, blockSize().y, numbers);
-    return blockSize();
+void GlRenderer::readBlockTriangles(std::vector<std::uint32_t>& numbers) {
+    visible_.readNumbers(inFramebuffer(), numbers);
 }
 
 std::uint32_t GlRenderer::addSlot(const ResidentPage& page, const PageRecord& record,

@@ -6,7 +6,7 @@ BlockView::BlockView(const TileView& view, const Block& part)
     : block(part),
       eye(view.eye),
       frustum(frustumOf(view.projection, part.part, 1, view.near)),
-      boxes(view.projection, part.part, part.x, part.y, view.near) {}
+      boxes(view.projection, part.part, view.near) {}
 
 std::vector<std::uint32_t> pagesOf(std::span<const VisibleRanges> visible) {
     std::vector<std::uint32_t> pages;

@@ -64,7 +64,8 @@ Result<Dataset> openDataset(const std::string& path) {
 }
 
 Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& dataset, const Wall& wall,
-                                                           std::size_t tile, const Settings& settings) {
+                                                           std::size_t tile, const Settings& settings,
+                                                           double costOfLooking) {
     std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile, settings.level));
     const PixelRect& rect = wall.tiles[tile].onScreen;
     ASSIGN_OR_RETURN(pipeline->renderer_, Renderer::create(rect, lookOf(dataset, settings)));
@@ -81,7 +82,7 @@ Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& datase
         ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion,
                          makeOcclusion(settings.occlusion, *pipeline->renderer_));
         pipeline->conservative_.emplace(pipeline->visibility_, *pipeline->cache_, *pipeline->renderer_,
-                                        *pipeline->pages_, std::move(occlusion));
+                                        *pipeline->pages_, std::move(occlusion), costOfLooking);
     }
     return pipeline;
 }
@@ -110,7 +111,6 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
     renderer_->beginFrame(view);
     if (plp_) plp_->choose(cut_, {view.projection, view.tile, view.eye, view.near}, *cache_, stats);
     for (const Block& block : blocksOf(view.tile)) drawBlock(BlockView(view, block), stats);
-    if (conservative_) conservative_->endFrame();
 
     stats.visibilityMs += stats.pyramidMs + stats.testMs;
     stats.drawMs = watch.lap() - stats.visibilityMs - stats.fetchWaitMs;

@@ -28,8 +28,10 @@ Result<Dataset> openDataset(const std::string& path);
 // needs a current GL context.
 class TilePipeline {
   public:
-    static Result<std::unique_ptr<TilePipeline>> create(const Dataset& dataset, const Wall& wall,
-                                                        std::size_t tile, const Settings& settings);
+    // `costOfLooking`: of ConservativeDrawing.
+    static Result<std::unique_ptr<TilePipeline>> create(
+        const Dataset& dataset, const Wall& wall, std::size_t tile, const Settings& settings,
+        double costOfLooking = ConservativeDrawing::kCostOfLooking);
 
     // Draws the frame completely, however long the pages take, into the renderer's framebuffer.
     protocol::TileStats draw(const FrameState& state);

@@ -12,7 +12,7 @@ namespace iwalk::tools {
 namespace {
 
 struct Totals {
-    std::uint64_t pixels = 0, triangles = 0, hidden = 0, allTriangles = 0;
+    std::uint64_t pixels = 0, triangles = 0, hidden = 0, looks = 0, allTriangles = 0;
 };
 
 class ConservativeTest : public RenderTest, public ::testing::WithParamInterface<const char*> {
@@ -26,11 +26,11 @@ class ConservativeTest : public RenderTest, public ::testing::WithParamInterface
     }
     // Flies with and without and compares frame by frame, one picture against tiles.
     Totals expectSame(const Dataset& dataset, const std::vector<Camera>& path, const Settings& cplp,
-                      int columns = 1) {
+                      int columns = 1, double costOfLooking = 0) {
         Settings frustum = cplp;
         frustum.mode = Mode::frustum;
         const Wall one = wallOf(320, 240, 1, 1), tiles = wallOf(320, 240, columns, columns);
-        WallServers all(dataset, one, frustum), some(dataset, tiles, cplp);
+        WallServers all(dataset, one, frustum), some(dataset, tiles, cplp, costOfLooking);
         Totals totals;
         for (std::size_t i = 0; i < path.size(); ++i) {
             const Picture picture = all.draw(path[i]);
@@ -41,6 +41,7 @@ class ConservativeTest : public RenderTest, public ::testing::WithParamInterface
             totals.allTriangles += all.stats().triangles;
             totals.triangles += some.stats().triangles;
             totals.hidden += some.stats().hiddenPages + some.stats().hiddenRanges;
+            totals.looks += some.stats().pyramidMs > 0;
         }
         EXPECT_GT(totals.pixels, path.size() * 100);
         return totals;
@@ -183,6 +184,23 @@ TEST_P(ConservativeTest, FlyingThroughTheSample) {
     const Totals totals =
         expectSame(dataset, flight(dataset.manifest.bounds, 16, {0, 0, 1}), settings("cplp"), 2);
     EXPECT_GT(totals.hidden, 0u);
+}
+
+// Where little can be hidden, or little was, everything is drawn.
+TEST_P(ConservativeTest, LooksOnlyWhereItPays) {
+    Triangles triangles = wallAt(0, 4, 24);
+    for (int i = 0; i < 12; ++i) add(triangles, moved(sphere(0.5, 4), {2.0 + i, 0.2 * i - 1, 0.1 * i}));
+    const Dataset dataset = build(triangles);
+    const double pixels = 320 * 240, most = static_cast<double>(triangles.size()) / pixels;
+    const std::vector<Camera> hidden = drift({-3, 0, 0}, {0.02, 0.02, 0}, 6),
+                              open = drift({1, -8, 0}, {0, 0.01, 0}, 20);
+    EXPECT_EQ(expectSame(dataset, hidden, settings("cplp"), 1, 1.01 * most).looks, 0u);
+    EXPECT_EQ(expectSame(dataset, hidden, settings("cplp"), 1, 0.3 * most).looks, hidden.size());
+    std::vector<Camera> both = open;
+    both.insert(both.end(), hidden.begin(), hidden.end());
+    const Totals totals = expectSame(dataset, both, settings("cplp"), 1, 0.3 * most);
+    EXPECT_GT(totals.looks, hidden.size());
+    EXPECT_LT(totals.looks, both.size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Occlusion, ConservativeTest, ::testing::Values("hzb", "queries"),
