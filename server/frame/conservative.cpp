@@ -7,7 +7,8 @@
 namespace iwalk {
 namespace {
 
-// Without a last frame the nearest pages are the guess, up to so many triangles.
+// Without a last frame the nearest pages are the guess, up to so many triangles, and up to half of all: what
+// is drawn before the look is not found to be hidden.
 constexpr std::uint64_t kFirstGuess = 100'000;
 // So many triangles beyond the guess make another look at the depth worth while: at first few, since the
 // guess may have been bad, then twice as many each time, up to the most.
@@ -26,7 +27,7 @@ void ConservativeDrawing::drawBlock(const BlockView& view, std::span<const Visib
     for (const VisibleRanges& ranges : candidates) triangles += visibility_.trianglesOf(ranges);
     if (!memory_->looking.pays(static_cast<double>(triangles), costOfLooking_ * pixels))
         return drawAll(view, candidates, stats);
-    drawSeen(view, candidates, stats);
+    drawSeen(view, candidates, std::min(kFirstGuess, triangles / 2), stats);
     memory_->looking.looked(static_cast<double>(hiddenTriangles_), static_cast<double>(triangles),
                             costOfLooking_ * pixels);
 }
@@ -40,12 +41,12 @@ void ConservativeDrawing::drawAll(const BlockView& view, std::span<const Visible
 }
 
 void ConservativeDrawing::drawSeen(const BlockView& view, std::span<const VisibleRanges> candidates,
-                                   protocol::TileStats& stats) {
+                                   std::uint64_t firstGuess, protocol::TileStats& stats) {
     draws_.clear();
     drawn_.clear();
     hiddenTriangles_ = 0;
     rest_ = false;
-    const std::vector<VisibleRanges> guess = guessAmong(candidates);
+    const std::vector<VisibleRanges> guess = guessAmong(candidates, firstGuess);
     cache_.beginFrame(pagesOf(guess));
     renderer_.beginBlock(view.block);
     drawGuess(view, guess, stats);
@@ -59,13 +60,14 @@ void ConservativeDrawing::drawSeen(const BlockView& view, std::span<const Visibl
 }
 
 // What of the last frame's ranges is among the candidates, in their order.
-std::vector<VisibleRanges> ConservativeDrawing::guessAmong(std::span<const VisibleRanges> candidates) const {
+std::vector<VisibleRanges> ConservativeDrawing::guessAmong(std::span<const VisibleRanges> candidates,
+                                                           std::uint64_t firstGuess) const {
     const std::vector<PageRange>& seen = memory_->guess;
     std::vector<VisibleRanges> guess;
     if (seen.empty()) {
         std::uint64_t triangles = 0;
         for (const VisibleRanges& ranges : candidates) {
-            if (triangles >= kFirstGuess) break;
+            if (triangles >= firstGuess) break;
             triangles += visibility_.trianglesOf(ranges);
             guess.push_back(ranges);
         }

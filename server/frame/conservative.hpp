@@ -45,13 +45,14 @@ class ConservativeDrawing {
     };
     void drawAll(const BlockView& view, std::span<const VisibleRanges> candidates,
                  protocol::TileStats& stats);
-    void drawSeen(const BlockView& view, std::span<const VisibleRanges> candidates,
+    void drawSeen(const BlockView& view, std::span<const VisibleRanges> candidates, std::uint64_t firstGuess,
                   protocol::TileStats& stats);
     struct Draw {
         std::uint32_t page;
         std::size_t firstRange;  // in drawn_
     };
-    std::vector<VisibleRanges> guessAmong(std::span<const VisibleRanges> candidates) const;
+    std::vector<VisibleRanges> guessAmong(std::span<const VisibleRanges> candidates,
+                                          std::uint64_t firstGuess) const;
     void look(protocol::TileStats& stats);
     void drawGuess(const BlockView& view, std::span<const VisibleRanges> guess, protocol::TileStats& stats);
     void drawRest(const BlockView& view, std::vector<VisibleRanges> open, protocol::TileStats& stats);

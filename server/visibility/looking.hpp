@@ -4,11 +4,11 @@
 
 namespace iwalk {
 
-// Decides, for one block from frame to frame, whether finding out what is hidden is likely to spare more than
-// it costs. What was hidden when it was last looked says how much there is to be spared; before that, and
-// where much more or much less is in view than then, all may be hidden. Where looking does not pay it is
-// tried again after 1 frame, then after 2, 4, 8, and then every 16: so trying costs little, and a single
-// frame does not decide for long.
+// Decides, for one block from frame to frame, whether finding out what is hidden is likely to spare more
+// than it costs. What was hidden when it was last looked says how much there is to be spared; before that,
+// and where much more or much less is in view than then, all may be hidden. Where looking does not pay it is
+// tried again after 2 frames, then after 4, 8, and then every 16: so trying costs little, and a single frame
+// does not decide for long.
 class Looking {
   public:
     // For a frame with so many triangles in view; `cost`: of looking, in triangles drawn.
