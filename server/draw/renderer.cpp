@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
+#include "server/draw/arena_banks.hpp"
 #include "server/draw/gl_objects.hpp"
 #include "server/draw/shaders.hpp"
 #include "server/draw/visibility_buffer.hpp"
@@ -19,8 +20,6 @@
 namespace iwalk {
 namespace {
 
-// One GL buffer at the most; offsets into it must fit in 31 bits.
-constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
 constexpr std::uint32_t kNoBank = 0xffffffff;  // of pages that are not there any more
 
@@ -31,13 +30,16 @@ class GlRenderer : public Renderer {
     ~GlRenderer() override;
     Result<void> prepare();
 
-    Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override;
+    Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override {
+        return makeArenaBanks(bytes, kArenaAlignment, banks_);
+    }
     void beginFrame(const TileView& view) override;
     void beginBlock(const Block& block) override;
     std::uint32_t draw(const ResidentPage& page, const PageRecord& record, std::uint32_t rank,
                        std::span<const DrawnRange> ranges) override;
     void beginRest() override;
     void finish() override;
+    void drawLines(std::span<const Line> lines) override;
     void wait() override;
     glm::ivec2 readBlockDepths(std::vector<float>& depths) override;
     void readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
@@ -57,6 +59,8 @@ class GlRenderer : public Renderer {
     }
     void startNumbersAgain();
     void useVisibilityProgram(bool wide);
+    void useView(int x, int y) const;
+    void bindPicture(GLuint framebuffer);
     void shade();
     std::uint32_t shadingVariant() const;
     void useShadingProgram();
@@ -65,6 +69,7 @@ class GlRenderer : public Renderer {
     const PixelRect tile_;
     const SceneLook look_;
     VisibilityBuffer visible_;
+    Lines lines_;
     GLuint framebuffer_ = 0, color_ = 0;
     GLuint captureFramebuffer_ = 0, eyeDepth_ = 0;  // with the same colour; made when depth is first wanted
     GLuint shaded_ = 0;                             // one of the two
@@ -102,6 +107,7 @@ Result<void> GlRenderer::prepare() {
             "a tile of {}x{} px is larger than this GL draws ({} px): cut the wall into smaller tiles",
             width_, height_, largest);
     RETURN_IF_ERROR(makeFramebuffers());
+    RETURN_IF_ERROR(lines_.prepare());
     for (const bool wide : {false, true}) {
         ASSIGN_OR_RETURN(visibilityPrograms_[wide], compileVisibilityProgram(wide, look_.overdraw));
         vertexArrays_[wide] = makeVertexArray(wide ? 3 : 2);
@@ -129,30 +135,6 @@ Result<void> GlRenderer::makeFramebuffers() {
     if (glCheckNamedFramebufferStatus(framebuffer_, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         return fail("this GL cannot draw {}x{} px", width_, height_);
     return {};
-}
-
-Result<std::vector<std::span<std::byte>>> GlRenderer::lendArena(std::uint64_t bytes) {
-    GLint64 largest = 0;  // that the second pass can read as one
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
-    const std::uint64_t bank =
-        std::min(kMaxBankBytes, static_cast<std::uint64_t>(largest)) / kArenaAlignment * kArenaAlignment;
-    constexpr GLbitfield kAccess =
-        GL_MAP_WRITE_BIT | GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-    std::vector<std::span<std::byte>> memory;
-    bytes = std::max(bytes, kArenaAlignment);
-    for (std::uint64_t left = (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment; left > 0;) {
-        const std::uint64_t size = std::min(left, bank);
-        GLuint buffer = 0;
-        glCreateBuffers(1, &buffer);
-        banks_.push_back(buffer);
-        glNamedBufferStorage(buffer, static_cast<GLsizeiptr>(size), nullptr, kAccess);
-        void* mapped = glMapNamedBufferRange(buffer, 0, static_cast<GLsizeiptr>(size), kAccess);
-        if (!mapped)
-            return fail("the GL has no {} for the geometry cache: lower --cache", formatBytes(bytes));
-        memory.emplace_back(static_cast<std::byte*>(mapped), size);
-        left -= size;
-    }
-    return memory;
 }
 
 void GlRenderer::beginFrame(const TileView& view) {
@@ -199,13 +181,18 @@ void GlRenderer::useVisibilityProgram(bool wide) {
     glEnable(GL_SCISSOR_TEST);
     glBindVertexArray(vertexArrays_[wide]);
     glUseProgram(used_);
+    useView(block_.x, block_.y);
+    const PixelRect part = inFramebuffer();
+    glScissor(part.x, part.y, part.width, part.height);
+}
+
+// The view's uniforms and viewport, for a framebuffer that begins at (x, y) px of the screen.
+void GlRenderer::useView(int x, int y) const {
     glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
     glUniform1f(kNear, static_cast<float>(view_.near));
     const Window window = windowFor(view_.screenWidth, view_.screenHeight, block_);
     const float half = static_cast<float>(window.edge) / 2;
-    glViewport(window.x - block_.x, window.y - block_.y, window.edge, window.edge);
-    const PixelRect part = inFramebuffer();
-    glScissor(part.x, part.y, part.width, part.height);
+    glViewport(window.x - x, window.y - y, window.edge, window.edge);
     glUniform3f(kWindow, static_cast<float>(window.x) + half, static_cast<float>(window.y) + half, half);
 }
 
@@ -239,7 +226,7 @@ void GlRenderer::addTints(const ResidentPage& page, std::span<const DrawnRange> 
     tints_.push_back(static_cast<std::uint32_t>(ranges.size()));
     for (const DrawnRange& range : ranges) {
         tints_.push_back(range.firstIndex / 3);
-        tints_.push_back(look_.tints.of(page, range.range));
+        tints_.push_back(look_.tints.of(page, range));
     }
 }
 
@@ -301,19 +288,24 @@ void GlRenderer::finish() {
     glFinish();
 }
 
+// The block's part of the tile, to draw to, and its visibility buffer, to read.
+void GlRenderer::bindPicture(GLuint framebuffer) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(block_.part.x - tile_.x, block_.part.y - tile_.y, block_.part.width, block_.part.height);
+    visible_.bindForShading();
+}
+
 // Every pixel whose nearest surface was drawn since the last time gets its colour, while the pages are still
 // there. A pixel that a later batch covers is shaded again then.
 void GlRenderer::shade() {
     if (unshaded_ == slots_.size()) return;
     glNamedBufferSubData(pagesBuffer_, 0, static_cast<GLsizeiptr>(slots_.size() * sizeof(ShadedPage)),
                          slots_.data());
-    glBindFramebuffer(GL_FRAMEBUFFER, shaded_);
+    bindPicture(shaded_);
     glViewport(0, 0, width_, height_);
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(block_.part.x - tile_.x, block_.part.y - tile_.y, block_.part.width, block_.part.height);
     glBindVertexArray(emptyArray_);
-    visible_.bindForShading();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kPagesBinding, pagesBuffer_);
     if (look_.tints) {
         glNamedBufferData(tintsBuffer_, static_cast<GLsizeiptr>(4 * tints_.size()), tints_.data(),
@@ -332,6 +324,16 @@ void GlRenderer::shade() {
         glUniform1ui(kBank, bank);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
+    glDisable(GL_SCISSOR_TEST);
+    used_ = 0;
+}
+
+void GlRenderer::drawLines(std::span<const Line> lines) {
+    bindPicture(framebuffer_);
+    lines_.use();
+    useView(tile_.x, tile_.y);
+    glUniform2i(kInBlock, tile_.x - block_.x, tile_.y - block_.y);
+    lines_.draw(lines);
     glDisable(GL_SCISSOR_TEST);
     used_ = 0;
 }

@@ -12,6 +12,7 @@
 #include "common/settings.hpp"
 #include "server/cache/page_cache.hpp"
 #include "server/draw/blocks.hpp"
+#include "server/draw/lines.hpp"
 #include "server/draw/tints.hpp"
 #include "server/visibility/frustum_visibility.hpp"
 
@@ -67,6 +68,9 @@ class Renderer {
     // Shades what was drawn since the last time; returns when the pixels are there and no page is read any
     // more.
     virtual void finish() = 0;
+
+    // Over the block's pixels, when they are finished.
+    virtual void drawLines(std::span<const Line> lines) = 0;
 
     // Returns when all that was drawn is there; pages are still needed.
     virtual void wait() = 0;
