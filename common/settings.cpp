@@ -147,11 +147,13 @@ Result<void> parsePlpRays(Settings& settings, const std::string& text) {
     return {};
 }
 
-constexpr std::array<const char*, 5> kShows{"none", "ranges", "levels", "cache", "overdraw"};
+constexpr std::array<const char*, 7> kShows{"none",     "ranges",   "levels",  "cache",
+                                            "overdraw", "priority", "birdseye"};
 
 Result<void> parseShow(Settings& settings, const std::string& text) {
     const auto found = std::find(kShows.begin(), kShows.end(), text);
-    if (found == kShows.end()) return fail("choose none, ranges, levels, cache or overdraw");
+    if (found == kShows.end())
+        return fail("choose none, ranges, levels, cache, overdraw, priority or birdseye");
     settings.show = static_cast<Show>(found - kShows.begin());
     return {};
 }
@@ -226,11 +228,13 @@ const std::array<Row, kRows>& rows() {
           "default 0.3; more chooses a little better and takes longer"},
          parsePlpRays,
          [](const Settings& s) { return fmt::format("{}", s.plpRays); }},
-        {{"show", "none|ranges|levels|cache|overdraw",
+        {{"show", "none|ranges|levels|cache|overdraw|priority|birdseye",
           "what colours mean, default none, the model's own: ranges, each another; levels, from blue (0) to "
           "red, full "
           "grey; cache, green what was in memory and red what this frame read; overdraw, how many triangles "
-          "cover the pixel: 1 blue, 4 teal, 16 green, 64 yellow, 256 white"},
+          "cover the pixel: 1 blue, 4 teal, 16 green, 64 yellow, 256 white; priority, with mode plp, from "
+          "red, chosen first, to blue; birdseye: from above, what is drawn for the tile, its frustum and the "
+          "boxes of pages in view: green drawn, red read for this frame, blue left out"},
          parseShow,
          [](const Settings& s) { return std::string(kShows[static_cast<std::size_t>(s.show)]); }},
     }};

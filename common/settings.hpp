@@ -14,7 +14,7 @@ namespace iwalk {
 enum class Shading : std::uint8_t { automatic, flat, smooth };
 enum class Ramp : std::uint8_t { automatic, none, height };
 enum class Mode : std::uint8_t { frustum, plp, cplp };
-enum class Show : std::uint8_t { none, ranges, levels, cache, overdraw };
+enum class Show : std::uint8_t { none, ranges, levels, cache, overdraw, priority, birdseye };
 enum class OcclusionTest : std::uint8_t { hzb, queries };
 
 // Every run-time setting of a server, the same on every tile. The command line, the [settings] table of a

@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
+#include "server/draw/arena_banks.hpp"
 #include "server/draw/gl_objects.hpp"
 #include "server/draw/shaders.hpp"
 #include "server/draw/visibility_buffer.hpp"
@@ -19,8 +20,6 @@
 namespace iwalk {
 namespace {
 
-// One GL buffer at the most; offsets into it must fit in 31 bits.
-constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
 constexpr std::uint32_t kNoBank = 0xffffffff;  // of pages that are not there any more
 
@@ -31,16 +30,19 @@ class GlRenderer : public Renderer {
     ~GlRenderer() override;
     Result<void> prepare();
 
-    Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override;
+    Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override {
+        return makeArenaBanks(bytes, kArenaAlignment, banks_);
+    }
     void beginFrame(const TileView& view) override;
     void beginBlock(const Block& block) override;
     std::uint32_t draw(const ResidentPage& page, const PageRecord& record, std::uint32_t rank,
                        std::span<const DrawnRange> ranges) override;
     void beginRest() override;
     void finish() override;
+    void drawLines(std::span<const Line> lines) override;
     void wait() override;
     glm::ivec2 readBlockDepths(std::vector<float>& depths) override;
-    glm::ivec2 readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
+    void readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
     glm::ivec2 bindBlock() override;
     ColorImage readColor() override;
     std::uint32_t colorTexture() const override { return color_; }
@@ -52,11 +54,14 @@ class GlRenderer : public Renderer {
     std::uint32_t addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
                           const glm::dvec3& origin, std::uint32_t rank);
     void addTints(const ResidentPage& page, std::span<const DrawnRange> ranges);
-    glm::ivec2 blockSize() const {
-        return {block_.part.x + block_.part.width - block_.x, block_.part.y + block_.part.height - block_.y};
+    // The block's part in its framebuffer.
+    PixelRect inFramebuffer() const {
+        return {block_.part.x - block_.x, block_.part.y - block_.y, block_.part.width, block_.part.height};
     }
     void startNumbersAgain();
     void useVisibilityProgram(bool wide);
+    void useView(int x, int y) const;
+    void bindPicture(GLuint framebuffer);
     void shade();
     std::uint32_t shadingVariant() const;
     void useShadingProgram();
@@ -65,6 +70,7 @@ class GlRenderer : public Renderer {
     const PixelRect tile_;
     const SceneLook look_;
     VisibilityBuffer visible_;
+    Lines lines_;
     GLuint framebuffer_ = 0, color_ = 0;
     GLuint captureFramebuffer_ = 0, eyeDepth_ = 0;  // with the same colour; made when depth is first wanted
     GLuint shaded_ = 0;                             // one of the two
@@ -102,6 +108,7 @@ Result<void> GlRenderer::prepare() {
             "a tile of {}x{} px is larger than this GL draws ({} px): cut the wall into smaller tiles",
             width_, height_, largest);
     RETURN_IF_ERROR(makeFramebuffers());
+    RETURN_IF_ERROR(lines_.prepare());
     for (const bool wide : {false, true}) {
         ASSIGN_OR_RETURN(visibilityPrograms_[wide], compileVisibilityProgram(wide, look_.overdraw));
         vertexArrays_[wide] = makeVertexArray(wide ? 3 : 2);
@@ -131,30 +138,6 @@ Result<void> GlRenderer::makeFramebuffers() {
     return {};
 }
 
-Result<std::vector<std::span<std::byte>>> GlRenderer::lendArena(std::uint64_t bytes) {
-    GLint64 largest = 0;  // that the second pass can read as one
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
-    const std::uint64_t bank =
-        std::min(kMaxBankBytes, static_cast<std::uint64_t>(largest)) / kArenaAlignment * kArenaAlignment;
-    constexpr GLbitfield kAccess =
-        GL_MAP_WRITE_BIT | GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-    std::vector<std::span<std::byte>> memory;
-    bytes = std::max(bytes, kArenaAlignment);
-    for (std::uint64_t left = (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment; left > 0;) {
-        const std::uint64_t size = std::min(left, bank);
-        GLuint buffer = 0;
-        glCreateBuffers(1, &buffer);
-        banks_.push_back(buffer);
-        glNamedBufferStorage(buffer, static_cast<GLsizeiptr>(size), nullptr, kAccess);
-        void* mapped = glMapNamedBufferRange(buffer, 0, static_cast<GLsizeiptr>(size), kAccess);
-        if (!mapped)
-            return fail("the GL has no {} for the geometry cache: lower --cache", formatBytes(bytes));
-        memory.emplace_back(static_cast<std::byte*>(mapped), size);
-        left -= size;
-    }
-    return memory;
-}
-
 void GlRenderer::beginFrame(const TileView& view) {
     CHECK(view.tile == tile_);
     view_ = view;
@@ -166,6 +149,7 @@ void GlRenderer::beginFrame(const TileView& view) {
     };
     const float background[] = {channel(16), channel(8), channel(0), 1};
     const float nothing[] = {0, 0, 0, 0};
+    glDisable(GL_SCISSOR_TEST);
     glClearNamedFramebufferfv(shaded_, GL_COLOR, 0, background);
     if (view.captureDepth) glClearNamedFramebufferfv(shaded_, GL_COLOR, 1, nothing);
 }
@@ -176,6 +160,7 @@ void GlRenderer::beginBlock(const Block& block) {
     slots_.clear();
     tints_.clear();
     unshaded_ = 0;
+    glDisable(GL_SCISSOR_TEST);
     visible_.clear();
 }
 
@@ -197,12 +182,18 @@ void GlRenderer::useVisibilityProgram(bool wide) {
     glEnable(GL_SCISSOR_TEST);
     glBindVertexArray(vertexArrays_[wide]);
     glUseProgram(used_);
+    useView(block_.x, block_.y);
+    const PixelRect part = inFramebuffer();
+    glScissor(part.x, part.y, part.width, part.height);
+}
+
+// The view's uniforms and viewport, for a framebuffer that begins at (x, y) px of the screen.
+void GlRenderer::useView(int x, int y) const {
     glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
     glUniform1f(kNear, static_cast<float>(view_.near));
     const Window window = windowFor(view_.screenWidth, view_.screenHeight, block_);
     const float half = static_cast<float>(window.edge) / 2;
-    glViewport(window.x - block_.x, window.y - block_.y, window.edge, window.edge);
-    glScissor(block_.part.x - block_.x, block_.part.y - block_.y, block_.part.width, block_.part.height);
+    glViewport(window.x - x, window.y - y, window.edge, window.edge);
     glUniform3f(kWindow, static_cast<float>(window.x) + half, static_cast<float>(window.y) + half, half);
 }
 
@@ -236,7 +227,7 @@ void GlRenderer::addTints(const ResidentPage& page, std::span<const DrawnRange> 
     tints_.push_back(static_cast<std::uint32_t>(ranges.size()));
     for (const DrawnRange& range : ranges) {
         tints_.push_back(range.firstIndex / 3);
-        tints_.push_back(look_.tints.of(page, range.range));
+        tints_.push_back(look_.tints.of(page, range));
     }
 }
 
@@ -255,12 +246,14 @@ void GlRenderer::beginRest() {
 }
 
 glm::ivec2 GlRenderer::bindBlock() {
+    const PixelRect part = inFramebuffer();
     visible_.bind();
-    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(part.x, part.y, part.width, part.height);
     glEnable(GL_DEPTH_TEST);
-    glViewport(0, 0, blockSize().x, blockSize().y);
+    glViewport(part.x, part.y, part.width, part.height);
     used_ = 0;
-    return blockSize();
+    return {part.width, part.height};
 }
 
 void GlRenderer::wait() {
@@ -268,13 +261,12 @@ void GlRenderer::wait() {
 }
 
 glm::ivec2 GlRenderer::readBlockDepths(std::vector<float>& depths) {
-    visible_.readDepths(blockSize().x, blockSize().y, depths);
-    return blockSize();
+    visible_.readDepths(inFramebuffer(), depths);
+    return {block_.part.width, block_.part.height};
 }
 
-glm::ivec2 GlRenderer::readBlockTriangles(std::vector<std::uint32_t>& numbers) {
-    visible_.readNumbers(blockSize().x, blockSize().y, numbers);
-    return blockSize();
+void GlRenderer::readBlockTriangles(std::vector<std::uint32_t>& numbers) {
+    visible_.readNumbers(inFramebuffer(), numbers);
 }
 
 std::uint32_t GlRenderer::addSlot(const ResidentPage& page, const PageRecord& record,
@@ -297,19 +289,24 @@ void GlRenderer::finish() {
     glFinish();
 }
 
+// The block's part of the tile, to draw to, and its visibility buffer, to read.
+void GlRenderer::bindPicture(GLuint framebuffer) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(block_.part.x - tile_.x, block_.part.y - tile_.y, block_.part.width, block_.part.height);
+    visible_.bindForShading();
+}
+
 // Every pixel whose nearest surface was drawn since the last time gets its colour, while the pages are still
 // there. A pixel that a later batch covers is shaded again then.
 void GlRenderer::shade() {
     if (unshaded_ == slots_.size()) return;
     glNamedBufferSubData(pagesBuffer_, 0, static_cast<GLsizeiptr>(slots_.size() * sizeof(ShadedPage)),
                          slots_.data());
-    glBindFramebuffer(GL_FRAMEBUFFER, shaded_);
+    bindPicture(shaded_);
     glViewport(0, 0, width_, height_);
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(block_.part.x - tile_.x, block_.part.y - tile_.y, block_.part.width, block_.part.height);
     glBindVertexArray(emptyArray_);
-    visible_.bindForShading();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kPagesBinding, pagesBuffer_);
     if (look_.tints) {
         glNamedBufferData(tintsBuffer_, static_cast<GLsizeiptr>(4 * tints_.size()), tints_.data(),
@@ -328,6 +325,16 @@ void GlRenderer::shade() {
         glUniform1ui(kBank, bank);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
+    glDisable(GL_SCISSOR_TEST);
+    used_ = 0;
+}
+
+void GlRenderer::drawLines(std::span<const Line> lines) {
+    bindPicture(framebuffer_);
+    lines_.use();
+    useView(tile_.x, tile_.y);
+    glUniform2i(kInBlock, tile_.x - block_.x, tile_.y - block_.y);
+    lines_.draw(lines);
     glDisable(GL_SCISSOR_TEST);
     used_ = 0;
 }

@@ -12,6 +12,7 @@
 #include "common/settings.hpp"
 #include "server/cache/page_cache.hpp"
 #include "server/draw/blocks.hpp"
+#include "server/draw/lines.hpp"
 #include "server/draw/tints.hpp"
 #include "server/visibility/frustum_visibility.hpp"
 
@@ -62,20 +63,22 @@ class Renderer {
     // draw's number in the block.
     virtual std::uint32_t draw(const ResidentPage& page, const PageRecord& record, std::uint32_t rank,
                                std::span<const DrawnRange> ranges) = 0;
-    // What is drawn from here on may come before what has been drawn. Once in a block.
+    // What is drawn from here on may come before what has been drawn. Once in a block at the most.
     virtual void beginRest() = 0;
     // Shades what was drawn since the last time; returns when the pixels are there and no page is read any
     // more.
     virtual void finish() = 0;
 
+    // Over the block's pixels, when they are finished.
+    virtual void drawLines(std::span<const Line> lines) = 0;
+
     // Returns when all that was drawn is there; pages are still needed.
     virtual void wait() = 0;
-    // The block's pixels as drawn so far, row by row from its framebuffer's corner to the end of its part:
-    // window depths, and triangles as (number of the draw + 1) << 16 | triangle in the page, or 0. The
-    // results are their width and height.
+    // The pixels of the block's part as drawn so far, row by row: window depths, and triangles as (number of
+    // the draw + 1) << 16 | triangle in the page, or 0. The result is the part's width and height.
     virtual glm::ivec2 readBlockDepths(std::vector<float>& depths) = 0;
-    virtual glm::ivec2 readBlockTriangles(std::vector<std::uint32_t>& numbers) = 0;
-    // Makes the block's framebuffer GL's, for others to test boxes against its depth; the result is its size.
+    virtual void readBlockTriangles(std::vector<std::uint32_t>& numbers) = 0;
+    // Makes the block's part GL's viewport, for others to test boxes against its depth; likewise.
     virtual glm::ivec2 bindBlock() = 0;
 
     virtual ColorImage readColor() = 0;

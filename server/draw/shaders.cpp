@@ -84,6 +84,32 @@ void main() {
 )";
 const char* const kNoFragment = "void main() {}\n";
 
+// Positions from the eye, clipped by the GL; with the depths of what is drawn
+// to tell what is behind it.
+const char* const kLine = R"(
+layout(location = 0) uniform mat3 toPixels;
+layout(location = 1) uniform float near;
+layout(location = 2) uniform vec3 window;
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec4 color;
+flat out vec4 lineColor;
+void main() {
+    vec3 q = toPixels * place;
+    gl_Position = vec4((q.xy - q.z * window.xy) / window.z, near, q.z);
+    lineColor = color;
+}
+)";
+const char* const kLineFragment = R"(
+layout(location = 10) uniform ivec2 inBlock;
+layout(binding = 1) uniform sampler2D depths;
+flat in vec4 lineColor;
+layout(location = 0) out vec4 color;
+void main() {
+    bool behind = gl_FragCoord.z < texelFetch(depths, ivec2(gl_FragCoord.xy) + inBlock, 0).r;
+    color = vec4(lineColor.rgb, lineColor.a * (behind ? 0.2 : 1.0));
+}
+)";
+
 const char* const kWholeTile = R"(
 void main() {
     gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
@@ -310,6 +336,10 @@ Result<std::uint32_t> compileRestProgram() {
 
 Result<std::uint32_t> compileBoxProgram() {
     return compile("", kBox, kNoFragment);
+}
+
+Result<std::uint32_t> compileLineProgram() {
+    return compile("", kLine, kLineFragment);
 }
 
 Result<std::uint32_t> compileShadingProgram(std::uint32_t variant) {

@@ -39,8 +39,9 @@ Tints::Tints(const Hierarchy& hierarchy, Show show) : show_(show) {
     }
 }
 
-std::uint32_t Tints::of(const ResidentPage& page, std::uint32_t range) const {
-    if (show_ == Show::ranges) return anyColor(page.page * 65537 + range);
+std::uint32_t Tints::of(const ResidentPage& page, const DrawnRange& range) const {
+    if (show_ == Show::ranges) return anyColor(page.page * 65537 + range.range);
+    if (show_ == Show::priority) return rainbow(1 - range.turn / (kTurns - 1.0));
     if (show_ == Show::cache) return page.fetched ? packed(0.9, 0.25, 0.2) : packed(0.3, 0.75, 0.3);
     const std::uint8_t level = levels_[page.page];
     return level == kFullLevel ? packed(0.75, 0.75, 0.75)

@@ -5,18 +5,21 @@
 
 #include "common/settings.hpp"
 #include "server/cache/page_cache.hpp"
+#include "server/visibility/frustum_visibility.hpp"
 
 namespace iwalk {
 
-// What ranges are coloured by to be looked at (`--show ranges|levels|cache`).
+// What ranges are coloured by to be looked at (`--show ranges|levels|cache|priority`).
 class Tints {
   public:
     Tints() = default;
     explicit Tints(const Hierarchy& hierarchy, Show show);
 
-    explicit operator bool() const { return show_ != Show::none && show_ != Show::overdraw; }
+    explicit operator bool() const {
+        return show_ != Show::none && show_ != Show::overdraw && show_ != Show::birdseye;
+    }
     // Of a range of the page: RGBA8 in memory order, sRGB.
-    std::uint32_t of(const ResidentPage& page, std::uint32_t range) const;
+    std::uint32_t of(const ResidentPage& page, const DrawnRange& range) const;
 
   private:
     Show show_ = Show::none;

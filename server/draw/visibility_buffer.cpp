@@ -11,6 +11,10 @@ namespace {
 constexpr GLuint kNobody[] = {0, 0, 0, 0};
 constexpr GLfloat kInfinitelyFar[] = {0};
 
+std::size_t pixelsOf(const PixelRect& part) {
+    return static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
+}
+
 }  // namespace
 
 VisibilityBuffer::~VisibilityBuffer() {
@@ -81,17 +85,17 @@ void VisibilityBuffer::bindForShading() const {
     }
 }
 
-void VisibilityBuffer::readDepths(int width, int height, std::vector<float>& depths) const {
-    depths.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+void VisibilityBuffer::readDepths(const PixelRect& part, std::vector<float>& depths) const {
+    depths.resize(pixelsOf(part));
     glBindFramebuffer(GL_READ_FRAMEBUFFER, layers_[rest_].framebuffer);
-    glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+    glReadPixels(part.x, part.y, part.width, part.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
 }
 
-void VisibilityBuffer::readNumbers(int width, int height, std::vector<std::uint32_t>& numbers) const {
-    numbers.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+void VisibilityBuffer::readNumbers(const PixelRect& part, std::vector<std::uint32_t>& numbers) const {
+    numbers.resize(pixelsOf(part));
     const auto read = [&](const Layer& layer, std::vector<std::uint32_t>& to) {
         glBindFramebuffer(GL_READ_FRAMEBUFFER, layer.framebuffer);
-        glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, to.data());
+        glReadPixels(part.x, part.y, part.width, part.height, GL_RED_INTEGER, GL_UNSIGNED_INT, to.data());
     };
     read(layers_[0], numbers);
     if (!rest_) return;

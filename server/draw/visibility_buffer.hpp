@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "server/wall/wall.hpp"
 
 namespace iwalk {
 
@@ -31,10 +32,10 @@ class VisibilityBuffer {
     void bind() const;            // for drawing
     void bindForShading() const;  // texture units 0 to 3: numbers, depths, and those of the second layer
 
-    // Rows of `width` px from the block's corner, as drawn so far.
-    void readDepths(int width, int height, std::vector<float>& depths) const;
+    // The pixels of a part of the block, row by row, as drawn so far.
+    void readDepths(const PixelRect& part, std::vector<float>& depths) const;
     // The second layer's number where it has one, even where equal depths say otherwise.
-    void readNumbers(int width, int height, std::vector<std::uint32_t>& numbers) const;
+    void readNumbers(const PixelRect& part, std::vector<std::uint32_t>& numbers) const;
 
   private:
     struct Layer {

@@ -7,10 +7,12 @@
 namespace iwalk {
 namespace {
 
-// Without a last frame the nearest pages are the guess, up to so many triangles.
+// Without a last frame the nearest pages are the guess, up to so many triangles, and up to half of all: what
+// is drawn before the look is not found to be hidden.
 constexpr std::uint64_t kFirstGuess = 100'000;
-// So many triangles beyond the guess make another look at the depth worth while.
-constexpr std::uint64_t kLookAgain = 200'000;
+// So many triangles beyond the guess make another look at the depth worth while: at first few, since the
+// guess may have been bad, then twice as many each time, up to the most.
+constexpr std::uint64_t kLookAgain = 50'000, kLookAgainAtMost = 200'000;
 // Pages that are asked for together: more let fetch threads read ahead, fewer leave more unread that the next
 // look finds hidden.
 constexpr std::size_t kPagesTogether = 16;
@@ -19,15 +21,37 @@ constexpr std::size_t kPagesTogether = 16;
 
 void ConservativeDrawing::drawBlock(const BlockView& view, std::span<const VisibleRanges> candidates,
                                     protocol::TileStats& stats) {
+    memory_ = &memories_[{view.block.x, view.block.y}];
+    const auto pixels = static_cast<double>(view.block.part.width) * view.block.part.height;
+    std::uint64_t triangles = 0;
+    for (const VisibleRanges& ranges : candidates) triangles += visibility_.trianglesOf(ranges);
+    if (!memory_->looking.pays(static_cast<double>(triangles), costOfLooking_ * pixels))
+        return drawAll(view, candidates, stats);
+    drawSeen(view, candidates, std::min(kFirstGuess, triangles / 2), stats);
+    memory_->looking.looked(static_cast<double>(hiddenTriangles_), static_cast<double>(triangles),
+                            costOfLooking_ * pixels);
+}
+
+void ConservativeDrawing::drawAll(const BlockView& view, std::span<const VisibleRanges> candidates,
+                                  protocol::TileStats& stats) {
+    cache_.beginFrame(pagesOf(candidates));
+    renderer_.beginBlock(view.block);
+    pages_.drawAll(view, candidates, stats);
+    renderer_.finish();
+}
+
+void ConservativeDrawing::drawSeen(const BlockView& view, std::span<const VisibleRanges> candidates,
+                                   std::uint64_t firstGuess, protocol::TileStats& stats) {
     draws_.clear();
     drawn_.clear();
-    const std::vector<VisibleRanges> guess = guessAmong(candidates);
+    hiddenTriangles_ = 0;
+    rest_ = false;
+    const std::vector<VisibleRanges> guess = guessAmong(candidates, firstGuess);
     cache_.beginFrame(pagesOf(guess));
     renderer_.beginBlock(view.block);
     drawGuess(view, guess, stats);
     look(stats);
-    renderer_.beginRest();
-    const std::size_t done = guess_.empty() ? guess.size() : 0;
+    const std::size_t done = memory_->guess.empty() ? guess.size() : 0;
     drawRest(view, {candidates.begin() + static_cast<std::ptrdiff_t>(done), candidates.end()}, stats);
     renderer_.finish();
     Stopwatch watch;
@@ -36,22 +60,23 @@ void ConservativeDrawing::drawBlock(const BlockView& view, std::span<const Visib
 }
 
 // What of the last frame's ranges is among the candidates, in their order.
-std::vector<VisibleRanges> ConservativeDrawing::guessAmong(std::span<const VisibleRanges> candidates) const {
+std::vector<VisibleRanges> ConservativeDrawing::guessAmong(std::span<const VisibleRanges> candidates,
+                                                           std::uint64_t firstGuess) const {
+    const std::vector<PageRange>& seen = memory_->guess;
     std::vector<VisibleRanges> guess;
-    if (guess_.empty()) {
+    if (seen.empty()) {
         std::uint64_t triangles = 0;
         for (const VisibleRanges& ranges : candidates) {
-            if (triangles >= kFirstGuess) break;
+            if (triangles >= firstGuess) break;
             triangles += visibility_.trianglesOf(ranges);
             guess.push_back(ranges);
         }
         return guess;
     }
     for (const VisibleRanges& ranges : candidates) {
-        auto known =
-            std::lower_bound(guess_.begin(), guess_.end(), PageRange(ranges.page, ranges.firstRange));
+        auto known = std::lower_bound(seen.begin(), seen.end(), PageRange(ranges.page, ranges.firstRange));
         const PageRange end(ranges.page, ranges.firstRange + ranges.rangeCount);
-        for (; known != guess_.end() && *known < end; ++known) {
+        for (; known != seen.end() && *known < end; ++known) {
             const bool next = !guess.empty() && guess.back().page == ranges.page &&
                               guess.back().firstRange + guess.back().rangeCount == known->second;
             if (next)
@@ -95,11 +120,12 @@ void ConservativeDrawing::drawRest(const BlockView& view, std::vector<VisibleRan
                                    protocol::TileStats& stats) {
     std::size_t from = 0;
     hidePages(view, open, from, stats);
-    std::uint64_t lastLook = stats.triangles;
+    std::uint64_t lastLook = stats.triangles, lookAgain = kLookAgain;
     while (from < open.size()) {
-        if (stats.triangles - lastLook >= kLookAgain) {
+        if (stats.triangles - lastLook >= lookAgain) {
             look(stats);
             lastLook = stats.triangles;
+            lookAgain = std::min(2 * lookAgain, kLookAgainAtMost);
             hidePages(view, open, from, stats);
         }
         std::size_t end = std::min(open.size(), from + kPagesTogether);
@@ -119,8 +145,12 @@ void ConservativeDrawing::hidePages(const BlockView& view, std::vector<VisibleRa
     }
     occlusion_->hidden(boxes_, hidden_);
     std::size_t kept = from;
-    for (std::size_t i = from; i < open.size(); ++i)
-        if (!hidden_[i - from]) open[kept++] = open[i];
+    for (std::size_t i = from; i < open.size(); ++i) {
+        if (hidden_[i - from])
+            hiddenTriangles_ += visibility_.trianglesOf(open[i]);
+        else
+            open[kept++] = open[i];
+    }
     stats.hiddenPages += open.size() - kept;
     open.resize(kept);
     stats.testMs += watch.lap();
@@ -141,11 +171,12 @@ void ConservativeDrawing::drawSome(const BlockView& view, std::span<const Visibl
 
 // Ranges of the guess are drawn already.
 void ConservativeDrawing::removeGuessed(PageDrawing::Page& page) const {
-    auto known = std::lower_bound(guess_.begin(), guess_.end(), PageRange(page.page.page, 0));
+    const std::vector<PageRange>& guess = memory_->guess;
+    auto known = std::lower_bound(guess.begin(), guess.end(), PageRange(page.page.page, 0));
     std::erase_if(page.ranges, [&](const DrawnRange& range) {
         const PageRange that(page.page.page, range.range);
-        while (known != guess_.end() && *known < that) ++known;
-        return known != guess_.end() && *known == that;
+        while (known != guess.end() && *known < that) ++known;
+        return known != guess.end() && *known == that;
     });
 }
 
@@ -157,14 +188,22 @@ void ConservativeDrawing::drawOpen(std::vector<PageDrawing::Page>& open, protoco
     occlusion_->hidden(boxes_, hidden_);
     auto answer = hidden_.begin();
     for (PageDrawing::Page& page : open)
-        stats.hiddenRanges += std::erase_if(page.ranges, [&](const DrawnRange&) { return *answer++; });
+        stats.hiddenRanges += std::erase_if(page.ranges, [&](const DrawnRange& range) {
+            if (*answer) hiddenTriangles_ += range.indexCount / 3;
+            return *answer++;
+        });
     stats.testMs += watch.lap();
-    for (const PageDrawing::Page& page : open) draw(page, stats);
+    for (const PageDrawing::Page& page : open) {
+        if (!page.ranges.empty() && !rest_) renderer_.beginRest();
+        rest_ = rest_ || !page.ranges.empty();
+        draw(page, stats);
+    }
     open.clear();
 }
 
-// The ranges that own a pixel.
+// The ranges that own a pixel are the next frame's guess.
 void ConservativeDrawing::remember() {
+    memory_->guess.clear();
     renderer_.readBlockTriangles(pixels_);
     std::uint32_t last = 0;
     std::vector<bool> owns(drawn_.size());
@@ -182,15 +221,9 @@ void ConservativeDrawing::remember() {
         const auto range = static_cast<std::size_t>(behind - drawn_.begin()) - 1;
         if (owns[range]) continue;
         owns[range] = true;
-        seen_.emplace_back(draws_[number].page, drawn_[range].range);
+        memory_->guess.emplace_back(draws_[number].page, drawn_[range].range);
     }
-}
-
-void ConservativeDrawing::endFrame() {
-    std::sort(seen_.begin(), seen_.end());
-    seen_.erase(std::unique(seen_.begin(), seen_.end()), seen_.end());
-    guess_.swap(seen_);
-    seen_.clear();
+    std::sort(memory_->guess.begin(), memory_->guess.end());
 }
 
 }  // namespace iwalk

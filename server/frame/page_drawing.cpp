@@ -6,7 +6,7 @@ BlockView::BlockView(const TileView& view, const Block& part)
     : block(part),
       eye(view.eye),
       frustum(frustumOf(view.projection, part.part, 1, view.near)),
-      boxes(view.projection, part.part, part.x, part.y, view.near) {}
+      boxes(view.projection, part.part, view.near) {}
 
 std::vector<std::uint32_t> pagesOf(std::span<const VisibleRanges> visible) {
     std::vector<std::uint32_t> pages;
@@ -30,14 +30,16 @@ bool PageDrawing::take(const BlockView& view, std::span<const VisibleRanges>& vi
     page = {next.page, visible.front().rank, {}};
     for (; !visible.empty() && visible.front().page == number; visible = visible.subspan(1))
         if (there)
-            cullRanges(*next.page.table, visible.front().firstRange, visible.front().rangeCount, view.frustum,
-                       view.boxes, view.eye, page.ranges);
+            cullRanges(*next.page.table, visible.front(), view.frustum, view.boxes, view.eye, page.ranges);
     return there;
 }
 
 std::uint32_t PageDrawing::draw(const Page& page, protocol::TileStats& stats) {
     stats.ranges += page.ranges.size();
     for (const DrawnRange& range : page.ranges) stats.triangles += range.indexCount / 3;
+    if (drawn_ != nullptr)
+        for (const DrawnRange& range : page.ranges)
+            drawn_->push_back({page.page.page, range.range, page.page.fetched});
     return renderer_.draw(page.page, hierarchy_.pages[page.page.page], page.rank, page.ranges);
 }
 

@@ -39,6 +39,13 @@ class PageDrawing {
     bool take(const BlockView& view, std::span<const VisibleRanges>& visible, Page& page,
               const std::function<void()>& beforeRelease);
 
+    // From here on what is drawn is noted there, too; nullptr: no longer.
+    struct Drawn {
+        std::uint32_t page, range;
+        bool fetched;  // the page was read for it
+    };
+    void noteInto(std::vector<Drawn>* drawn) { drawn_ = drawn; }
+
     // The result is the draw's number in the block.
     std::uint32_t draw(const Page& page, protocol::TileStats& stats);
 
@@ -49,6 +56,7 @@ class PageDrawing {
     const Hierarchy& hierarchy_;
     PageCache& cache_;
     Renderer& renderer_;
+    std::vector<Drawn>* drawn_ = nullptr;
 };
 
 }  // namespace iwalk

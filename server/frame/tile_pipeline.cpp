@@ -64,7 +64,10 @@ Result<Dataset> openDataset(const std::string& path) {
 }
 
 Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& dataset, const Wall& wall,
-                                                           std::size_t tile, const Settings& settings) {
+                                                           std::size_t tile, const Settings& settings,
+                                                           double costOfLooking) {
+    if (settings.show == Show::priority && settings.mode != Mode::plp)
+        return fail("--show priority needs --mode plp: the other modes have no priorities");
     std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile, settings.level));
     const PixelRect& rect = wall.tiles[tile].onScreen;
     ASSIGN_OR_RETURN(pipeline->renderer_, Renderer::create(rect, lookOf(dataset, settings)));
@@ -81,8 +84,11 @@ Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& datase
         ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion,
                          makeOcclusion(settings.occlusion, *pipeline->renderer_));
         pipeline->conservative_.emplace(pipeline->visibility_, *pipeline->cache_, *pipeline->renderer_,
-                                        *pipeline->pages_, std::move(occlusion));
+                                        *pipeline->pages_, std::move(occlusion), costOfLooking);
     }
+    if (settings.show == Show::birdseye)
+        pipeline->birdsEye_.emplace(dataset.hierarchy, pipeline->visibility_, *pipeline->cache_,
+                                    *pipeline->renderer_, *pipeline->pages_);
     return pipeline;
 }
 
@@ -109,8 +115,11 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
     const TileView view = viewOf(state);
     renderer_->beginFrame(view);
     if (plp_) plp_->choose(cut_, {view.projection, view.tile, view.eye, view.near}, *cache_, stats);
+    std::vector<PageDrawing::Drawn> drawn;
+    pages_->noteInto(birdsEye_ ? &drawn : nullptr);
     for (const Block& block : blocksOf(view.tile)) drawBlock(BlockView(view, block), stats);
-    if (conservative_) conservative_->endFrame();
+    pages_->noteInto(nullptr);
+    if (birdsEye_) birdsEye_->draw(view, cameraOf(state).up, cut_, drawn);
 
     stats.visibilityMs += stats.pyramidMs + stats.testMs;
     stats.drawMs = watch.lap() - stats.visibilityMs - stats.fetchWaitMs;

@@ -8,6 +8,7 @@
 #include "common/settings.hpp"
 #include "server/cache/page_cache.hpp"
 #include "server/draw/renderer.hpp"
+#include "server/frame/birds_eye.hpp"
 #include "server/frame/conservative.hpp"
 #include "server/frame/frame_state.hpp"
 #include "server/frame/plp_frame.hpp"
@@ -28,8 +29,10 @@ Result<Dataset> openDataset(const std::string& path);
 // needs a current GL context.
 class TilePipeline {
   public:
-    static Result<std::unique_ptr<TilePipeline>> create(const Dataset& dataset, const Wall& wall,
-                                                        std::size_t tile, const Settings& settings);
+    // `costOfLooking`: of ConservativeDrawing.
+    static Result<std::unique_ptr<TilePipeline>> create(
+        const Dataset& dataset, const Wall& wall, std::size_t tile, const Settings& settings,
+        double costOfLooking = ConservativeDrawing::kCostOfLooking);
 
     // Draws the frame completely, however long the pages take, into the renderer's framebuffer.
     protocol::TileStats draw(const FrameState& state);
@@ -57,6 +60,7 @@ class TilePipeline {
     std::unique_ptr<PageCache> cache_;  // after the renderer, whose memory it uses
     std::optional<PageDrawing> pages_;
     std::optional<ConservativeDrawing> conservative_;  // with --mode cplp
+    std::optional<BirdsEye> birdsEye_;                 // with --show birdseye
 };
 
 // What near plane rank 0 puts into the frame state: the setting, or a hundred thousandth of the model's

@@ -71,13 +71,31 @@ void FrustumVisibility::sortFrontToBack(std::vector<VisibleRanges>& found, const
         found[i].rank = found[i - 1].rank + (found[i].page != found[i - 1].page ? 1 : 0);
 }
 
-void cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,
+std::vector<VisibleRanges> joined(std::vector<VisibleRanges> ranges) {
+    std::sort(ranges.begin(), ranges.end(), [](const VisibleRanges& a, const VisibleRanges& b) {
+        return std::tuple(a.page, a.firstRange) < std::tuple(b.page, b.firstRange);
+    });
+    std::vector<VisibleRanges> whole;
+    for (const VisibleRanges& next : ranges) {
+        const std::uint32_t end = whole.empty() ? 0 : whole.back().firstRange + whole.back().rangeCount;
+        const bool samePage = !whole.empty() && whole.back().page == next.page;
+        if (samePage && next.firstRange < end) continue;
+        if (samePage && next.firstRange == end && whole.back().turn == next.turn)
+            whole.back().rangeCount += next.rangeCount;
+        else
+            whole.push_back(next);
+    }
+    return whole;
+}
+
+void cullRanges(const PageTable& table, const VisibleRanges& some, const Frustum& frustum,
                 const BoxProjection& projection, const LatticeEye& eye, std::vector<DrawnRange>& ranges) {
     const auto add = [&](std::uint32_t r, const glm::dvec3& low, const glm::dvec3& high) {
         const ScreenBox box = projection.of(low, high);
-        if (!box.empty()) ranges.push_back({r, table.ranges[r].firstIndex, table.ranges[r].indexCount, box});
+        const Range& range = table.ranges[r];
+        if (!box.empty()) ranges.push_back({r, range.firstIndex, range.indexCount, box, some.turn});
     };
-    forRangesIn(table, first, count, frustum, eye, add);
+    forRangesIn(table, some.firstRange, some.rangeCount, frustum, eye, add);
 }
 
 }  // namespace iwalk

@@ -17,13 +17,19 @@ namespace iwalk {
 struct VisibleRanges {
     std::uint32_t page = 0, firstRange = 0, rangeCount = 0;
     std::uint32_t rank = 0;  // of the page in the order of all that the frustum has; decides equal depths
+    std::uint8_t turn = 0;   // 0 to kTurns - 1: when mode plp has chosen them, by the budget spent before
 };
+constexpr unsigned kTurns = 16;
+
+// The same ranges, by page and place in it, each once; neighbours of one turn are one.
+std::vector<VisibleRanges> joined(std::vector<VisibleRanges> ranges);
 
 // A range that is drawn.
 struct DrawnRange {
     std::uint32_t range = 0;  // of its page
     std::uint32_t firstIndex = 0, indexCount = 0;
-    ScreenBox box;  // nothing of it is drawn nearer than that
+    ScreenBox box;          // nothing of it is drawn nearer than that
+    std::uint8_t turn = 0;  // VisibleRanges::turn
 };
 
 // Visibility by the frustum alone (`--mode frustum`): everything of the cut whose box meets it.
@@ -67,8 +73,8 @@ void forRangesIn(const PageTable& table, std::uint32_t first, std::uint32_t coun
     }
 }
 
-// Appends the ranges among `table.ranges[first, first + count)` that may have a pixel in the frustum.
-void cullRanges(const PageTable& table, std::uint32_t first, std::uint32_t count, const Frustum& frustum,
+// Appends those of a page's ranges that may have a pixel in the frustum.
+void cullRanges(const PageTable& table, const VisibleRanges& some, const Frustum& frustum,
                 const BoxProjection& projection, const LatticeEye& eye, std::vector<DrawnRange>& ranges);
 
 }  // namespace iwalk

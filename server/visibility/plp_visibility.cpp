@@ -163,23 +163,21 @@ std::vector<VisibleRanges> PlpVisibility::choose(const std::vector<Candidate>& c
     for (const Candidate& candidate : candidates) scores.add(candidate);
 
     // What is too large for what is left of the budget leaves room for what comes after it.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> taken;  // page, range
+    std::vector<VisibleRanges> taken;
+    std::vector<std::uint64_t> spent;  // before each
     std::uint64_t left = budget_;
     for (const Seen& range : scores.scored(raysPerPixel_)) {
         if (range.triangles > left) continue;
+        spent.push_back(budget_ - left);
         left -= range.triangles;
-        taken.emplace_back(range.page, range.range);
+        taken.push_back({range.page, range.range, 1});
     }
+    const std::uint64_t all = std::max<std::uint64_t>(1, budget_ - left);
+    for (std::size_t i = 0; i < taken.size(); ++i)
+        taken[i].turn =
+            static_cast<std::uint8_t>(std::min<std::uint64_t>(kTurns - 1, kTurns * spent[i] / all));
 
-    std::sort(taken.begin(), taken.end());
-    std::vector<VisibleRanges> visible;
-    for (const auto& [page, range] : taken) {
-        if (!visible.empty() && visible.back().page == page &&
-            visible.back().firstRange + visible.back().rangeCount == range)
-            ++visible.back().rangeCount;
-        else
-            visible.push_back({page, range, 1});
-    }
+    std::vector<VisibleRanges> visible = joined(std::move(taken));
     frustum_.sortFrontToBack(visible, sight.eye);
     return visible;
 }

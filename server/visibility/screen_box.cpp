@@ -27,27 +27,23 @@ struct Extent {
     void add(double x) { low = std::min(low, x), high = std::max(high, x); }
 };
 
-// The pixels of [from, from + count), counted from `origin`, whose centres lie in the extent grown by how far
+// The pixels of [from, from + count), counted from `from`, whose centres lie in the extent grown by how far
 // off its ends may be drawn.
-void pixelsOf(Extent extent, double error, double depthError, int from, int count, int origin, int& first,
-              int& end) {
+void pixelsOf(Extent extent, double error, double depthError, int from, int count, int& first, int& end) {
     const double largest = std::max(std::abs(extent.low), std::abs(extent.high));
     const double margin = kSnap + error + largest * (depthError + kWindowError);
     const double low = std::ceil(extent.low - margin - 0.5),
                  high = std::floor(extent.high + margin - 0.5) + 1;
-    first = static_cast<int>(std::clamp<double>(low, from, from + count)) - origin;
-    end = static_cast<int>(std::clamp<double>(high, from, from + count)) - origin;
+    first = static_cast<int>(std::clamp<double>(low, from, from + count)) - from;
+    end = static_cast<int>(std::clamp<double>(high, from, from + count)) - from;
 }
 
 }  // namespace
 
-BoxProjection::BoxProjection(const ScreenProjection& projection, const PixelRect& part, int originX,
-                             int originY, double near)
+BoxProjection::BoxProjection(const ScreenProjection& projection, const PixelRect& part, double near)
     : toPixels_(projection.toPixels),
       errors_(absolute(projection.toPixels) * kRowError),
       part_(part),
-      originX_(originX),
-      originY_(originY),
       near_(near * (1 + kDepthError)) {}
 
 ScreenBox BoxProjection::of(const glm::dvec3& low, const glm::dvec3& high) const {
@@ -59,10 +55,7 @@ ScreenBox BoxProjection::of(const glm::dvec3& low, const glm::dvec3& high) const
         edges[axis] = toPixels_[axis] * (high[axis] - low[axis]);
         nearest += std::min(0.0, edges[axis].z);
     }
-    if (!(nearest > near_)) {
-        const int left = part_.x - originX_, top = part_.y - originY_;
-        return {left, top, left + part_.width, top + part_.height, ScreenBox::kAtTheEye};
-    }
+    if (!(nearest > near_)) return {0, 0, part_.width, part_.height, ScreenBox::kAtTheEye};
 
     Extent x, y;
     for (unsigned corner = 0; corner < 8; ++corner) {
@@ -74,8 +67,8 @@ ScreenBox BoxProjection::of(const glm::dvec3& low, const glm::dvec3& high) const
         y.add(q.y * over);
     }
     ScreenBox box;
-    pixelsOf(x, error.x / nearest, error.z / nearest, part_.x, part_.width, originX_, box.left, box.right);
-    pixelsOf(y, error.y / nearest, error.z / nearest, part_.y, part_.height, originY_, box.top, box.bottom);
+    pixelsOf(x, error.x / nearest, error.z / nearest, part_.x, part_.width, box.left, box.right);
+    pixelsOf(y, error.y / nearest, error.z / nearest, part_.y, part_.height, box.top, box.bottom);
     box.depth = static_cast<float>(near_ / nearest);
     return box;
 }

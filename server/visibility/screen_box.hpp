@@ -12,7 +12,7 @@ namespace iwalk {
 // depth that their corners may have.
 struct ScreenBox {
     static constexpr float kAtTheEye = std::numeric_limits<float>::infinity();  // nothing is nearer
-    int left = 0, top = 0, right = 0, bottom = 0;  // px of the block: [left, right) x [top, bottom)
+    int left = 0, top = 0, right = 0, bottom = 0;  // px of the block's part: [left, right) x [top, bottom)
     float depth = 0;  // as in the depth buffer: 1 at the near plane, 0 infinitely far
 
     bool empty() const { return left >= right || top >= bottom; }
@@ -22,10 +22,9 @@ struct ScreenBox {
 // change is bounded and added, so that what a ScreenBox says is true of every triangle in the box.
 class BoxProjection {
   public:
-    // `part`: px of the screen, what of it is drawn; ScreenBoxes count from (originX, originY). `near`: in
-    // the unit of the boxes.
-    BoxProjection(const ScreenProjection& projection, const PixelRect& part, int originX, int originY,
-                  double near);
+    // `part`: px of the screen, what of it is drawn; ScreenBoxes count from its corner. `near`: in the unit
+    // of the boxes.
+    BoxProjection(const ScreenProjection& projection, const PixelRect& part, double near);
 
     // Corners from the eye, model axes. A box that reaches before the near plane may cover all of the block
     // and is at the eye.
@@ -34,7 +33,6 @@ class BoxProjection {
   private:
     const glm::dmat3 toPixels_, errors_;  // errors_: of toPixels_ * v, for the sizes of v
     const PixelRect part_;
-    const int originX_, originY_;  // px of the screen
     const double near_;
 };
 

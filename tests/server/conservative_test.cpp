@@ -12,7 +12,7 @@ namespace iwalk::tools {
 namespace {
 
 struct Totals {
-    std::uint64_t pixels = 0, triangles = 0, hidden = 0, allTriangles = 0;
+    std::uint64_t pixels = 0, triangles = 0, hidden = 0, looks = 0, allTriangles = 0;
 };
 
 class ConservativeTest : public RenderTest, public ::testing::WithParamInterface<const char*> {
@@ -26,11 +26,11 @@ class ConservativeTest : public RenderTest, public ::testing::WithParamInterface
     }
     // Flies with and without and compares frame by frame, one picture against tiles.
     Totals expectSame(const Dataset& dataset, const std::vector<Camera>& path, const Settings& cplp,
-                      int columns = 1) {
+                      int columns = 1, double costOfLooking = 0) {
         Settings frustum = cplp;
         frustum.mode = Mode::frustum;
         const Wall one = wallOf(320, 240, 1, 1), tiles = wallOf(320, 240, columns, columns);
-        WallServers all(dataset, one, frustum), some(dataset, tiles, cplp);
+        WallServers all(dataset, one, frustum), some(dataset, tiles, cplp, costOfLooking);
         Totals totals;
         for (std::size_t i = 0; i < path.size(); ++i) {
             const Picture picture = all.draw(path[i]);
@@ -41,6 +41,7 @@ class ConservativeTest : public RenderTest, public ::testing::WithParamInterface
             totals.allTriangles += all.stats().triangles;
             totals.triangles += some.stats().triangles;
             totals.hidden += some.stats().hiddenPages + some.stats().hiddenRanges;
+            totals.looks += some.stats().pyramidMs > 0;
         }
         EXPECT_GT(totals.pixels, path.size() * 100);
         return totals;
@@ -183,6 +184,28 @@ TEST_P(ConservativeTest, FlyingThroughTheSample) {
     const Totals totals =
         expectSame(dataset, flight(dataset.manifest.bounds, 16, {0, 0, 1}), settings("cplp"), 2);
     EXPECT_GT(totals.hidden, 0u);
+}
+
+// What of the model must be hidden for looking to pay, as a share of all its triangles.
+double costOf(const Triangles& triangles, double share) {
+    return share * static_cast<double>(triangles.size()) / (320 * 240);
+}
+
+TEST_P(ConservativeTest, LooksWhereMuchIsHidden) {
+    Triangles triangles = wallAt(0, 4, 24);
+    for (int i = 0; i < 12; ++i) add(triangles, moved(sphere(0.5, 4), {2.0 + i, 0.2 * i - 1, 0.1 * i}));
+    const Dataset dataset = build(triangles);
+    const std::vector<Camera> path = drift({-3, 0, 0}, {0.02, 0.02, 0}, 6);
+    EXPECT_EQ(expectSame(dataset, path, settings("cplp"), 1, costOf(triangles, 0.3)).looks, path.size());
+    EXPECT_EQ(expectSame(dataset, path, settings("cplp"), 1, costOf(triangles, 1.01)).looks, 0u);
+}
+
+TEST_P(ConservativeTest, LooksNowAndThenWhereNothingIsHidden) {
+    const Triangles triangles = wallAt(0, 1.5, 40);
+    const Totals totals = expectSame(build(triangles), drift({-3, 0, 0}, {0.001, 0, 0}, 20), settings("cplp"),
+                                     1, costOf(triangles, 0.3));
+    EXPECT_EQ(totals.looks, 4u);  // in frames 0, 3, 8, 17
+    EXPECT_EQ(totals.triangles, totals.allTriangles);
 }
 
 INSTANTIATE_TEST_SUITE_P(Occlusion, ConservativeTest, ::testing::Values("hzb", "queries"),

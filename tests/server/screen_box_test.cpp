@@ -32,6 +32,7 @@ class ScreenBoxTest : public ::testing::Test {
         wall.height = height;
         return wall;
     }
+    static constexpr int kFar = 1000000;  // px
     std::mt19937 random_{5};
 };
 
@@ -46,7 +47,7 @@ TEST_F(ScreenBoxTest, ContainsWhateverTheShaderMakesOfTheBox) {
         const ScreenProjection projection = projectScreen(wall(edge, edge).screens(fov)[0], view);
         const double near = 0.01;
         const glm::dvec3 low = point(3), high = low + glm::abs(point(std::pow(10, number(-5, 0.5))));
-        const BoxProjection boxes(projection, {-1000000, -1000000, 2000000, 2000000}, 0, 0, near);
+        const BoxProjection boxes(projection, {-kFar, -kFar, 2 * kFar, 2 * kFar}, near);
         const ScreenBox box = boxes.of(low, high);
         for (int i = 0; i < 20; ++i) {
             const glm::dvec3 in = glm::mix(low, high, glm::dvec3(i & 1, i >> 1 & 1, i >> 2 & 1));
@@ -57,12 +58,12 @@ TEST_F(ScreenBoxTest, ContainsWhateverTheShaderMakesOfTheBox) {
                 continue;
             }
             ASSERT_LE(vertex.depth, box.depth);
-            if (glm::any(glm::greaterThan(glm::abs(vertex.onScreen), glm::vec2(900000)))) continue;
+            if (glm::any(glm::greaterThan(glm::abs(vertex.onScreen), glm::vec2(0.9f * kFar)))) continue;
             ++tested;
-            ASSERT_LE(static_cast<float>(box.left), std::ceil(vertex.onScreen.x - 0.5f));
-            ASSERT_GE(static_cast<float>(box.right), std::floor(vertex.onScreen.x - 0.5f) + 1);
-            ASSERT_LE(static_cast<float>(box.top), std::ceil(vertex.onScreen.y - 0.5f));
-            ASSERT_GE(static_cast<float>(box.bottom), std::floor(vertex.onScreen.y - 0.5f) + 1);
+            ASSERT_LE(static_cast<float>(box.left - kFar), std::ceil(vertex.onScreen.x - 0.5f));
+            ASSERT_GE(static_cast<float>(box.right - kFar), std::floor(vertex.onScreen.x - 0.5f) + 1);
+            ASSERT_LE(static_cast<float>(box.top - kFar), std::ceil(vertex.onScreen.y - 0.5f));
+            ASSERT_GE(static_cast<float>(box.bottom - kFar), std::floor(vertex.onScreen.y - 0.5f) + 1);
         }
     }
     EXPECT_GT(tested, 10000);
@@ -72,7 +73,7 @@ const Camera kAhead{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 90};
 
 TEST_F(ScreenBoxTest, IsTight) {
     const ScreenProjection projection = projectScreen(wall(200, 200).screens(90)[0], kAhead);
-    const BoxProjection boxes(projection, {50, 0, 100, 200}, 50, 0, 0.5);
+    const BoxProjection boxes(projection, {50, 0, 100, 200}, 0.5);
     const ScreenBox box = boxes.of({-1, -2, -20}, {1, 2, -10});  // 10 px to a unit at the near side
     EXPECT_EQ(box.left, 40);
     EXPECT_EQ(box.right, 60);
@@ -84,7 +85,7 @@ TEST_F(ScreenBoxTest, IsTight) {
 
 TEST_F(ScreenBoxTest, ABoxAcrossTheNearPlaneCoversAll) {
     const ScreenProjection projection = projectScreen(wall(200, 200).screens(90)[0], kAhead);
-    const BoxProjection boxes(projection, {50, 0, 100, 200}, 50, 0, 0.5);
+    const BoxProjection boxes(projection, {50, 0, 100, 200}, 0.5);
     for (const double nearest : {-0.5, -0.1, 0.5}) {
         const ScreenBox box = boxes.of({-1, -2, -20}, {1, 2, nearest});
         EXPECT_EQ(box.depth, ScreenBox::kAtTheEye);

@@ -91,5 +91,63 @@ TEST_F(ShowTest, TheCacheIsRedWhereItReadsAndThenGreen) {
     for (const Color& color : colorsIn(servers.draw(outside_))) EXPECT_TRUE(isGreen(color));
 }
 
+TEST_F(ShowTest, PrioritiesRunFromRedToBlueInModePlp) {
+    const Dataset dataset = build(sphere(1, 5));
+    Settings settings = showing(Show::priority);
+    EXPECT_FALSE(TilePipeline::create(dataset, wall_, 0, settings).ok());
+    settings.mode = Mode::plp;
+    int red = 0, blue = 0;
+    for (const Color& c : colorsIn(WallRenders(dataset, settings).draw(wall_, outside_))) {
+        EXPECT_FALSE(isGrey(c));
+        red += c[0] > std::max(c[1], c[2]);
+        blue += c[2] > std::max(c[0], c[1]);
+    }
+    EXPECT_GT(red, 0);
+    EXPECT_GT(blue, 0);
+}
+
+class BirdsEyeTest : public ShowTest {
+  protected:
+    // Pixels of exactly this colour: lines before all surfaces.
+    static int count(const Picture& picture, const Color& color) {
+        int pixels = 0;
+        for (int y = 0; y < picture.color.height; ++y)
+            for (int x = 0; x < picture.color.width; ++x)
+                pixels += std::equal(color.begin(), color.end(), picture.color.at(x, y));
+        return pixels;
+    }
+    static constexpr Color kDrawn{60, 200, 80}, kRead{230, 60, 50}, kLeftOut{80, 120, 230},
+        kFrustum{255, 220, 60};
+    const Wall large_ = wallOf(300, 300, 1, 1);
+};
+
+TEST_F(BirdsEyeTest, HasTheFrustumAndWhatWasReadAndDrawn) {
+    const Dataset dataset = build(sphere(1, 5));
+    WallServers servers(dataset, large_, showing(Show::birdseye));
+    const Picture first = servers.draw(outside_), second = servers.draw(outside_);
+    for (const Picture& picture : {first, second}) {
+        EXPECT_GT(count(picture, kFrustum), 50);
+        EXPECT_EQ(count(picture, kLeftOut), 0);
+        EXPECT_GT(std::ranges::count_if(picture.depth.pixels, [](float z) { return z > 0; }), 3000);
+    }
+    EXPECT_GT(count(first, kRead), 50);
+    EXPECT_EQ(count(first, kDrawn), 0);
+    EXPECT_GT(count(second, kDrawn), 50);
+    EXPECT_EQ(count(second, kRead), 0);
+}
+
+TEST_F(BirdsEyeTest, ShowsWhatIsHidden) {
+    Triangles triangles = moved(box({-4, -0.1, -4}, {4, 0.1, 4}), {0, -2, 0});
+    for (const double x : {-2, 0, 2}) {
+        const Triangles more = moved(sphere(0.9, 4), {x, 3, 0});
+        triangles.insert(triangles.end(), more.begin(), more.end());
+    }
+    const Dataset dataset = build(triangles);
+    Settings settings = showing(Show::birdseye);
+    EXPECT_EQ(count(WallServers(dataset, large_, settings).draw(outside_), kLeftOut), 0);
+    settings.mode = Mode::cplp;
+    EXPECT_GT(count(WallServers(dataset, large_, settings, 0).draw(outside_), kLeftOut), 50);
+}
+
 }  // namespace
 }  // namespace iwalk::tools

@@ -7,7 +7,7 @@
 namespace iwalk::tools {
 namespace {
 
-FrameState stateOf(const Camera& camera, double near) {
+FrameState stateOf(const Camera& camera, double near, std::uint32_t flags) {
     FrameState state;
     const auto copy = [](const glm::dvec3& from, double(&to)[3]) {
         to[0] = from.x, to[1] = from.y, to[2] = from.z;
@@ -17,7 +17,7 @@ FrameState stateOf(const Camera& camera, double near) {
     copy(camera.up, state.up);
     state.fovY = camera.fovY;
     state.near = near;
-    state.flags = protocol::kCaptureColor | protocol::kCaptureDepth;
+    state.flags = flags;
     return state;
 }
 
@@ -44,29 +44,46 @@ Wall wallOf(int width, int height, int columns, int rows) {
     return wall;
 }
 
-WallServers::WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings)
+WallServers::WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings,
+                         double costOfLooking)
     : wall_(wall), near_(nearPlane(settings, dataset.manifest)) {
     for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
-        Result<std::unique_ptr<TilePipeline>> pipeline = TilePipeline::create(dataset, wall, i, settings);
+        Result<std::unique_ptr<TilePipeline>> pipeline =
+            TilePipeline::create(dataset, wall, i, settings, costOfLooking);
         if (!pipeline) detail::checkFailed(__FILE__, __LINE__, pipeline.error().message);
         tiles_.push_back(std::move(pipeline).value());
     }
 }
 
 Picture WallServers::draw(const Camera& camera) {
+    drawTiles(camera, protocol::kCaptureColor | protocol::kCaptureDepth);
     Picture picture{ColorImage(wall_.width, wall_.height, 3), DepthImage(wall_.width, wall_.height, 1)};
-    stats_ = {};
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
-        const protocol::TileStats stats = tiles_[i]->draw(stateOf(camera, near_));
+        paste(tiles_[i]->renderer().readColor(), wall_.tiles[i].onWall, picture.color);
+        paste(tiles_[i]->renderer().readDepth(), wall_.tiles[i].onWall, picture.depth);
+    }
+    return picture;
+}
+
+void WallServers::drawOnly(const Camera& camera) {
+    drawTiles(camera, 0);
+}
+
+void WallServers::drawTiles(const Camera& camera, std::uint32_t flags) {
+    stats_ = {};
+    for (const std::unique_ptr<TilePipeline>& tile : tiles_) {
+        const protocol::TileStats stats = tile->draw(stateOf(camera, near_, flags));
+        stats_.visibilityMs += stats.visibilityMs;
+        stats_.fetchWaitMs += stats.fetchWaitMs;
+        stats_.drawMs += stats.drawMs;
+        stats_.pyramidMs += stats.pyramidMs;
+        stats_.testMs += stats.testMs;
         stats_.triangles += stats.triangles;
         stats_.hiddenPages += stats.hiddenPages;
         stats_.hiddenRanges += stats.hiddenRanges;
         stats_.badPages += stats.badPages;
         stats_.fetchedBytes += stats.fetchedBytes;
-        paste(tiles_[i]->renderer().readColor(), wall_.tiles[i].onWall, picture.color);
-        paste(tiles_[i]->renderer().readDepth(), wall_.tiles[i].onWall, picture.depth);
     }
-    return picture;
 }
 
 Picture WallRenders::draw(const Wall& wall, const Camera& camera) {

@@ -17,14 +17,19 @@ Wall wallOf(int width, int height, int columns, int rows);
 // they remember here. Needs a current GL context. Errors end the program.
 class WallServers {
   public:
-    // Both are kept by reference.
-    WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings);
+    // Both are kept by reference. `costOfLooking`: of ConservativeDrawing.
+    WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings,
+                double costOfLooking = ConservativeDrawing::kCostOfLooking);
     // Draws tile after tile; colour and eye-space depth of the whole wall.
     Picture draw(const Camera& camera);
-    // Sums over the tiles of the last draw().
+    // The same without pictures, as when nobody captures.
+    void drawOnly(const Camera& camera);
+    // Sums over the tiles of the last time.
     const protocol::TileStats& stats() const { return stats_; }
 
   private:
+    void drawTiles(const Camera& camera, std::uint32_t flags);
+
     const Wall& wall_;
     const double near_;  // model units
     std::vector<std::unique_ptr<TilePipeline>> tiles_;

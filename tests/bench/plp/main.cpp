@@ -1,5 +1,7 @@
 // iwalk-plp-bench: how many pixels are right in mode plp, by budget and by the way to choose, along a path
-// through a dataset; and what choosing costs. Markdown on standard output, JSON with --json.
+// through a dataset; and what choosing costs. Markdown on standard output, JSON with --json. A pixel is right
+// when its owner in the complete picture is drawn; with --colors the papers' measure, too: pictures of the
+// server's own pipeline, pixels of equal colour.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -25,6 +27,7 @@ struct Options {
     std::vector<int> tiles{1, 4};
     std::vector<std::uint64_t> budgets{35000, 70000, 140000, 280000};
     double rays = Settings().plpRays;
+    bool colors = false;
 };
 
 // `frames` cameras on straight lines between those of the path, evenly.
@@ -88,7 +91,42 @@ Spread accuracyOf(const Method& method, const std::vector<std::vector<Shot>>& fr
     return spreadOf(std::move(shares));
 }
 
-json accuracy(const Bench& bench, const Options& options, int n,
+// The share of pixels whose colour is that of mode frustum, in percent, over the frames; by budget.
+std::vector<Spread> equalColors(const Bench& bench, const Options& options, int n,
+                                const std::vector<Camera>& cameras) {
+    const Wall wall = tools::wallOf(n * options.width, n * options.height, n, n);
+    Settings settings;
+    settings.mode = Mode::frustum;
+    tools::WallServers complete(bench.dataset, wall, settings);
+    settings.mode = Mode::plp;
+    settings.plpRays = options.rays;
+    std::vector<std::unique_ptr<tools::WallServers>> walls;
+    for (const std::uint64_t budget : options.budgets) {
+        settings.plpBudget = budget;
+        walls.push_back(std::make_unique<tools::WallServers>(bench.dataset, wall, settings));
+    }
+    std::vector<std::vector<double>> shares(walls.size());
+    for (const Camera& camera : cameras) {
+        const tools::Picture picture = complete.draw(camera);
+        for (std::size_t i = 0; i < walls.size(); ++i) {
+            const tools::Comparison c = compare(picture, walls[i]->draw(camera), std::nullopt);
+            shares[i].push_back(100 - 100.0 * static_cast<double>(c.color.different) /
+                                          static_cast<double>(c.pixels()));
+        }
+    }
+    std::vector<Spread> spreads;
+    for (std::vector<double>& values : shares) spreads.push_back(spreadOf(std::move(values)));
+    return spreads;
+}
+
+json addRow(int n, const std::string& method, std::uint64_t budget, const Spread& spread) {
+    std::printf(" %.2f (%.2f) |", spread.median, spread.least);
+    std::fflush(stdout);
+    return {{"tiles", n * n},          {"method", method},    {"budget", budget},
+            {"median", spread.median}, {"min", spread.least}, {"p10", spread.p10}};
+}
+
+json accuracy(const Bench& bench, const Options& options, int n, const std::vector<Camera>& cameras,
               const std::vector<std::vector<Shot>>& frames) {
     const OriginalPlp original(bench.dataset.hierarchy, bench.cut, bench.dataset.manifest.leafTriangles);
     std::printf("\n%d tile%s of %dx%d, right pixels in %%: median (least)\n\n| chosen by |", n * n,
@@ -100,17 +138,15 @@ json accuracy(const Bench& bench, const Options& options, int n,
     json rows = json::array();
     for (const Method& method : allMethods(bench, original)) {
         std::printf("\n| %s |", method.name.c_str());
-        for (const std::uint64_t budget : options.budgets) {
-            const Spread spread = accuracyOf(method, frames, budget);
-            std::printf(" %.2f (%.2f) |", spread.median, spread.least);
-            std::fflush(stdout);
-            rows.push_back({{"tiles", n * n},
-                            {"method", method.name},
-                            {"budget", budget},
-                            {"median", spread.median},
-                            {"min", spread.least},
-                            {"p10", spread.p10}});
-        }
+        for (const std::uint64_t budget : options.budgets)
+            rows.push_back(addRow(n, method.name, budget, accuracyOf(method, frames, budget)));
+    }
+    if (options.colors) {
+        const std::string name = "`--mode plp`, equal colours";
+        std::printf("\n| %s |", name.c_str());
+        const std::vector<Spread> spreads = equalColors(bench, options, n, cameras);
+        for (std::size_t i = 0; i < spreads.size(); ++i)
+            rows.push_back(addRow(n, name, options.budgets[i], spreads[i]));
     }
     std::printf("\n");
     return rows;
@@ -183,7 +219,8 @@ Result<void> run(const Options& options) {
     std::printf("%s, %d frames of %s\n", options.dataset.c_str(), options.frames, options.path.c_str());
     for (const int n : options.tiles) {
         ASSIGN_OR_RETURN(const auto frames, takeShots(bench, options, n, cameras));
-        for (json& row : accuracy(bench, options, n, frames)) report["accuracy"].push_back(std::move(row));
+        for (json& row : accuracy(bench, options, n, cameras, frames))
+            report["accuracy"].push_back(std::move(row));
         report["costs"].push_back(costs(bench, options, n, frames));
     }
     if (!options.json.empty()) {
@@ -209,6 +246,7 @@ int main(int argc, char** argv) {
     app.add_option("--height", options.height, "px of a tile")->check(CLI::Range(1, 16384));
     app.add_option("--budgets", options.budgets, "triangles of a tile")->check(CLI::PositiveNumber);
     app.add_option("--rays", options.rays, "as iwalk-server's --plp-rays")->check(CLI::Range(0.001, 10.0));
+    app.add_flag("--colors", options.colors, "count pixels of equal colour, too, as the papers do");
     app.add_option("--json", options.json, "file for all figures");
     try {
         app.parse(argc, argv);

@@ -52,7 +52,7 @@ BenchTile::BenchTile(const Dataset& dataset, const PixelRect& rect, Method metho
                                     Arena(memory_, Renderer::kArenaAlignment), 2);
     pages_.emplace(dataset.hierarchy, *cache_, *renderer_);
     if (method != Method::frustum)
-        conservative_.emplace(visibility_, *cache_, *renderer_, *pages_, occlusionOf(method, *renderer_));
+        conservative_.emplace(visibility_, *cache_, *renderer_, *pages_, occlusionOf(method, *renderer_), 0);
 }
 
 template <class Fill>
@@ -79,7 +79,6 @@ protocol::TileStats BenchTile::draw(const TileView& view) {
         const std::vector<VisibleRanges> all = inFrustum(view);
         stats.visibilityMs = watch.lap();
         conservative_->drawBlock(block, all, stats);
-        conservative_->endFrame();
     });
 }
 

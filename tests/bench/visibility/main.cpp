@@ -6,22 +6,22 @@
 #include <cstdio>
 #include <functional>
 #include <glm/geometric.hpp>
-#include <map>
 
 #include "server/draw/gl_context.hpp"
 #include "tests/bench/visibility/bench_tile.hpp"
-#include "tests/server/wall_renders.hpp"
+#include "tests/bench/visibility/bench_wall.hpp"
 
 namespace {
 
 using namespace iwalk;
 using bench::BenchTile;
 using bench::Method;
+using bench::Series;
 
 struct Options {
     std::string dataset, views;
-    int frames = 10, width = 1024, height = 768;
-    double step = 0.001;
+    int frames = 10, width = 1024, height = 768, tiles = 0;
+    double step = 0.001, costOfLooking = ConservativeDrawing::kCostOfLooking;
     bool slow = false;
 };
 
@@ -44,9 +44,6 @@ TileView viewOf(const Dataset& dataset, const Wall& wall, const Camera& camera) 
     view.near = std::ldexp(nearPlane({}, dataset.manifest), -dataset.manifest.stepExponent);
     return view;
 }
-
-// What is measured, by name: one value a frame.
-using Series = std::map<std::string, std::vector<double>>;
 
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
@@ -97,21 +94,35 @@ void print(std::size_t view, const Series& series) {
     std::fflush(stdout);
 }
 
-Result<void> run(const Options& options) {
-    ASSIGN_OR_RETURN(const Dataset dataset, openDataset(options.dataset));
-    ASSIGN_OR_RETURN(const std::vector<Camera> views, loadCameraPath(options.views));
-    ASSIGN_OR_RETURN(const std::unique_ptr<GlContext> context, GlContext::createHeadless());
-    const Wall wall = tools::wallOf(options.width, options.height, 1, 1);
-    Tiles tiles(dataset, wall.tiles[0].onScreen);
+// Calls draw(camera, series) for the frames of each view.
+template <class Draw>
+void fly(const Options& options, const Manifest& manifest, const std::vector<Camera>& views,
+         const Draw& draw) {
     for (std::size_t v = 0; v < views.size(); ++v) {
         Series series;
         for (int frame = -2; frame < options.frames; ++frame) {
             Series unused;
-            const Camera camera = onTheWay(views[v], dataset.manifest, frame * options.step);
-            drawFrame(tiles, viewOf(dataset, wall, camera), options, frame < 0 ? unused : series);
+            draw(onTheWay(views[v], manifest, frame * options.step), frame < 0 ? unused : series);
         }
         print(v, series);
     }
+}
+
+Result<void> run(const Options& options) {
+    ASSIGN_OR_RETURN(const Dataset dataset, openDataset(options.dataset));
+    ASSIGN_OR_RETURN(const std::vector<Camera> views, loadCameraPath(options.views));
+    ASSIGN_OR_RETURN(const std::unique_ptr<GlContext> context, GlContext::createHeadless());
+    if (options.tiles > 0) {
+        bench::BenchWall wall(dataset, options.width, options.height, options.tiles, options.costOfLooking);
+        fly(options, dataset.manifest, views,
+            [&](const Camera& camera, Series& series) { wall.drawFrame(camera, series); });
+        return {};
+    }
+    const Wall wall = tools::wallOf(options.width, options.height, 1, 1);
+    Tiles tiles(dataset, wall.tiles[0].onScreen);
+    fly(options, dataset.manifest, views, [&](const Camera& camera, Series& series) {
+        drawFrame(tiles, viewOf(dataset, wall, camera), options, series);
+    });
     return {};
 }
 
@@ -124,14 +135,22 @@ int main(int argc, char** argv) {
         "triangles "
         "and ranges drawn, times of the stages, by method: frustum, hzb, queries and items (item buffer), "
         "perfect "
-        "(what the frame's own depth leaves at the grain of ranges), oracle (triangles that own a pixel).");
+        "(what the frame's own depth leaves at the grain of ranges), oracle (triangles that own a pixel). "
+        "With "
+        "--tiles the servers' modes on a wall instead.");
     app.option_defaults()->always_capture_default();
     app.add_option("DATASET", options.dataset, "directory that iwalk-preprocess made")->required();
     app.add_option("VIEWS", options.views, "camera path (JSON), each frame a view to begin at")->required();
     app.add_option("--frames", options.frames, "frames a view, behind two that are not counted");
     app.add_option("--step", options.step, "way from frame to frame, in diagonals of the model");
-    app.add_option("--width", options.width, "px, at most 1024");
-    app.add_option("--height", options.height, "px, at most 1024");
+    app.add_option("--width", options.width, "px of a tile; without --tiles at most 1024");
+    app.add_option("--height", options.height, "px of a tile; likewise");
+    app.add_option("--tiles", options.tiles,
+                   "N: a wall of N x N tiles, drawn one after the other in modes frustum, cplp and plp; sums")
+        ->check(CLI::Range(1, 16));
+    app.add_option("--cost-of-looking", options.costOfLooking,
+                   "with --tiles: triangles a pixel that must be hidden for cplp to look for them; 0: always")
+        ->check(CLI::NonNegativeNumber);
     app.add_flag("--slow", options.slow, "with queries and items, too");
     try {
         app.parse(argc, argv);
