@@ -23,8 +23,9 @@ int report(const Result<void>& result) {
 // Everything that can be said on the command line.
 struct Arguments {
     BuildOptions build;
-    std::string memory = "512M";
+    std::string memory = "512M", up = "z";
     int step = 0;
+    double noData = 0;
     std::string dataset, picture;
     bool json = false;
     GenerateOptions generate;
@@ -43,9 +44,39 @@ void addLimits(CLI::App* command, Arguments& arguments) {
         ->capture_default_str();
 }
 
+// What is read, and how.
+void addInputs(CLI::App* command, Arguments& arguments) {
+    ImportChoices& choices = arguments.build.import;
+    command
+        ->add_option(
+            "input", arguments.build.inputs,
+            "Models (.ply, .stl, .obj, .wrl, .gltf and others), assemblies (.json), height maps (.tif, "
+            ".png, .exr), directories of models, or patterns")
+        ->required()
+        ->type_name("INPUT");
+    command->add_option("--up", arguments.up, "The inputs' axis that points up: y is turned into z")
+        ->check(CLI::IsMember({"y", "z"}))
+        ->type_name("y|z")
+        ->capture_default_str();
+    command
+        ->add_option("--spacing", choices.spacing,
+                     "Of height maps: the distance of neighbouring samples, in model units")
+        ->check(CLI::PositiveNumber)
+        ->type_name("UNITS")
+        ->capture_default_str();
+    command
+        ->add_option("--height-scale", choices.heightScale,
+                     "Of height maps: what a sample's value is multiplied by, to be model units")
+        ->type_name("FACTOR")
+        ->capture_default_str();
+    command
+        ->add_option("--no-data", arguments.noData, "Of height maps: the sample value that stands for a hole")
+        ->type_name("VALUE");
+}
+
 CLI::App* addBuild(CLI::App& app, Arguments& arguments) {
-    CLI::App* command = app.add_subcommand("build", "Build a dataset from models (.ply, .obj)");
-    command->add_option("input", arguments.build.inputs, "Models to read")->required()->type_name("INPUT");
+    CLI::App* command = app.add_subcommand("build", "Build a dataset from models");
+    addInputs(command, arguments);
     command
         ->add_option("-o,--output", arguments.build.output,
                      "Directory of the dataset; made when it is not there, replaced when it is a dataset")
@@ -76,8 +107,16 @@ CLI::App* addInsert(CLI::App& app, Arguments& arguments) {
     command->add_option("dataset", arguments.build.output, "Directory of the dataset")
         ->required()
         ->type_name("DATASET");
-    command->add_option("input", arguments.build.inputs, "Models to add")->required()->type_name("INPUT");
+    addInputs(command, arguments);
     addLimits(command, arguments);
+    return command;
+}
+
+CLI::App* addMeasure(CLI::App& app, Arguments& arguments) {
+    CLI::App* command = app.add_subcommand(
+        "measure", "Say how large models are and what they have, without building anything");
+    addInputs(command, arguments);
+    command->add_flag("--json", arguments.json, "Print JSON");
     return command;
 }
 
@@ -106,10 +145,16 @@ CLI::App* addGenerate(CLI::App& app, GenerateOptions& options) {
         "Make a model of any size for tests and measurements; the same bytes on every machine\n"
         "  sphere       closed, with noise, no colours\n"
         "  plant        storeys, pipes, tanks, cable trays; coloured, to be seen from inside\n"
-        "  isosurface   a turbulent layer between two fluids, coloured by height");
-    command->add_option("scene", options.scene, "sphere, plant or isosurface")
-        ->required()
-        ->type_name("SCENE");
+        "  isosurface   a turbulent layer between two fluids, coloured by height\n"
+        "  terrain      mountains, hills and sea, coloured by height\n"
+        "and scenes that break what is careless:\n"
+        "  hard-far      millimetres, ten thousand kilometres from the origin\n"
+        "  hard-slivers  a million times as long as wide, without area, twice, upon one another\n"
+        "  hard-point    all around one vertex\n"
+        "  hard-flat     all in one plane\n"
+        "  hard-outlier  one vertex a million times as far away as all others\n"
+        "  hard-huge     one triangle as large as all others together");
+    command->add_option("scene", options.scene, "One of the above")->required()->type_name("SCENE");
     command
         ->add_option(
             "--triangles", options.triangles,
@@ -139,6 +184,7 @@ int run(int argc, char** argv) {
     Arguments arguments;
     const CLI::App* build = addBuild(app, arguments);
     const CLI::App* insert = addInsert(app, arguments);
+    const CLI::App* measure = addMeasure(app, arguments);
     const CLI::App* compact = addCompact(app, arguments);
     const CLI::App* generate = addGenerate(app, arguments.generate);
     CLI::App* info = addReader(app, arguments, "info", "Say what a dataset has");
@@ -158,6 +204,11 @@ int run(int argc, char** argv) {
     if (compact->parsed()) return report(runCompact(arguments.dataset));
     if (info->parsed()) return report(runInfo(arguments.dataset, arguments.json, arguments.picture));
     if (verify->parsed()) return report(runVerify(arguments.dataset, arguments.json));
+    arguments.build.import.yUp = arguments.up == "y";
+    for (const CLI::App* reader : {build, insert, measure}) {
+        if (reader->count("--no-data") > 0) arguments.build.import.noData = arguments.noData;
+    }
+    if (measure->parsed()) return report(runMeasure(arguments.build, arguments.json));
     const Result<std::uint64_t> memory = parseBytes(arguments.memory);
     if (!memory) return usage("--memory: " + memory.error().message);
     arguments.build.memoryBytes = *memory;

@@ -17,8 +17,7 @@ constexpr std::uint64_t kBaseBytes = 20 * kMiB;
 // written.
 constexpr std::uint64_t kThreadBytes = 7 * kMiB;
 constexpr std::uint64_t kMinBatchBytes = 12 * kMiB;
-constexpr std::uint64_t kImporterBytes = 16 * kMiB;  // the least that one needs
-constexpr std::uint64_t kSinkBytes = 4 * kMiB;       // batches of triangles on their way
+constexpr std::uint64_t kSinkBytes = 4 * kMiB;  // batches of triangles on their way
 
 }  // namespace
 
@@ -33,7 +32,6 @@ Result<Budget> makeBudget(const BuildOptions& options) {
     const std::uint64_t spillBytes = std::clamp<std::uint64_t>(work / 8, 4 * kMiB, 40 * kMiB);
     budget.chunkBytes = std::bit_floor(spillBytes / kGridBins);
     budget.importerBytes = work - kGridBins * budget.chunkBytes - kSinkBytes;
-    budget.keptImporters = budget.importerBytes / kImporterBytes;
     const unsigned wanted =
         options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
     const std::uint64_t affordable = (work - kMinBatchBytes) / kThreadBytes;

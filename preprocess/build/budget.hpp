@@ -13,7 +13,6 @@ inline constexpr std::uint64_t kMinMemoryBytes = std::uint64_t{64} << 20;
 // nearly all.
 struct Budget {
     std::uint64_t importerBytes = 0;  // all importers together
-    std::uint64_t keptImporters = 0;  // as many may be open at once
     std::size_t chunkBytes = 0;       // of the spill file, one buffer for each bin
     std::uint64_t batchBytes = 0;     // triangles in memory at once, and what sorting them takes
     unsigned threads = 1;             // that build pages

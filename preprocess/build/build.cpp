@@ -44,7 +44,7 @@ class Build {
           output_(output),
           progress_(progress),
           old_(old),
-          inputs_(options.inputs, budget, output.temporaryDirectory(), parts.openImporter) {
+          inputs_(options, budget, output.temporaryDirectory(), parts.openImporter) {
         if (old_ != nullptr) manifest_ = old_->manifest;
     }
 

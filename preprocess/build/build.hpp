@@ -7,6 +7,7 @@
 
 #include "common/dataset/manifest.hpp"
 #include "common/result.hpp"
+#include "preprocess/import/importer.hpp"
 #include "preprocess/progress.hpp"
 
 namespace iwalk {
@@ -21,6 +22,7 @@ struct BuildOptions {
     std::optional<int>
         stepExponent;      // lattice step as a power of two in model units; chosen from the input if absent
     unsigned threads = 0;  // 0: as many as there are cores
+    ImportChoices import{};
 };
 
 // Builds a dataset. Memory stays below the limit at any input size; all temporary files live in the output

@@ -9,9 +9,6 @@
 namespace iwalk {
 namespace {
 
-// For inputs without colours among others that have them: light grey, opaque.
-constexpr std::uint32_t kPlainColor = 0xffc8c8c8;
-
 // To the nearest integer, ties to even, for |value| < 2^51: adding pushes the fraction out. Much faster than
 // a call.
 double roundToInteger(double value) {

@@ -1,43 +1,95 @@
 #include "preprocess/build/inputs.hpp"
 
+#include <glob.h>
+
 #include <algorithm>
+#include <filesystem>
+
+#include "preprocess/import/placement.hpp"
 
 namespace iwalk {
+namespace {
 
-Inputs::Inputs(const std::vector<std::string>& paths, const Budget& budget, std::string spillDirectory,
+namespace fs = std::filesystem;
+
+Result<void> addDirectory(const std::string& directory, std::vector<std::string>& files) {
+    std::vector<std::string> found;
+    std::error_code error;
+    fs::recursive_directory_iterator entry(directory, error);
+    for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+        std::error_code ignored;
+        if (isModelName(entry->path().string()) && entry->is_regular_file(ignored))
+            found.push_back(entry->path().string());
+    }
+    if (error) return fail("{}: cannot be listed: {}", directory, error.message());
+    if (found.empty()) return fail("{}: has no models in it", directory);
+    std::ranges::sort(found);
+    files.insert(files.end(), found.begin(), found.end());
+    return {};
+}
+
+// Of a name that is no file's itself. Left as it is when nothing matches: opening it says what is wrong.
+void addMatches(const std::string& pattern, std::vector<std::string>& files) {
+    glob_t matches{};
+    if (::glob(pattern.c_str(), GLOB_NOCHECK, nullptr, &matches) == 0)
+        files.insert(files.end(), matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
+    else
+        files.push_back(pattern);
+    ::globfree(&matches);
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> findInputs(const std::vector<std::string>& names) {
+    std::vector<std::string> files;
+    for (const std::string& name : names) {
+        std::error_code ignored;
+        const fs::file_status status = fs::status(name, ignored);
+        if (fs::is_directory(status)) {
+            RETURN_IF_ERROR(addDirectory(name, files));
+        } else if (fs::exists(status) || name.find_first_of("*?[") == std::string::npos) {
+            files.push_back(name);
+        } else {
+            addMatches(name, files);
+        }
+    }
+    return files;
+}
+
+Inputs::Inputs(const BuildOptions& options, const Budget& budget, const std::string& spillDirectory,
                ImporterFactory factory)
-    : paths_(paths), keep_(paths.size() <= budget.keptImporters), factory_(std::move(factory)) {
-    limits_.memoryBytes = budget.importerBytes / (keep_ ? std::max<std::size_t>(paths.size(), 1) : 1);
-    limits_.spillDirectory = std::move(spillDirectory);
-    importers_.resize(paths.size());
-}
-
-Result<std::unique_ptr<Importer>> Inputs::open(std::size_t index) const {
-    return factory_(paths_[index], limits_);
-}
+    : turn_(options.import.yUp),
+      files_(options.inputs, {budget.importerBytes, spillDirectory, options.import}, std::move(factory)) {}
 
 Result<std::vector<ImportSummary>> Inputs::scan(const VertexSink& vertices, const ProgressSink& progress) {
+    const Placement turn = yUpToZUp();
+    std::vector<glm::dvec3> turned;
+    const VertexSink turning = [&](std::span<const glm::dvec3> points) {
+        turned.clear();
+        for (const glm::dvec3& point : points) turned.push_back(turn.point(point));
+        if (vertices) vertices(turned);
+    };
     std::vector<ImportSummary> summaries;
-    const double inputs = static_cast<double>(paths_.size());
-    for (std::size_t i = 0; i < paths_.size(); ++i) {
-        ASSIGN_OR_RETURN(std::unique_ptr<Importer> importer, open(i));
-        const auto part = [&](double done) { progress((static_cast<double>(i) + done) / inputs); };
-        ASSIGN_OR_RETURN(const ImportSummary summary, importer->scan(vertices, part));
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+        ASSIGN_OR_RETURN(ImportSummary summary,
+                         files_.scan(i, turn_ ? turning : vertices, partOf(progress, i, files_.size())));
+        if (turn_) summary.bounds = turn.box(summary.bounds);
         summaries.push_back(summary);
-        if (keep_) importers_[i] = std::move(importer);
     }
     return summaries;
 }
 
 Result<ImportCounts> Inputs::triangles(std::size_t index, const TriangleSink& sink,
                                        const ProgressSink& progress) {
-    std::unique_ptr<Importer> importer = std::move(importers_[index]);
-    if (!importer) {
-        ASSIGN_OR_RETURN(importer, open(index));
-        const auto ignored = [](std::span<const glm::dvec3>) {};
-        RETURN_IF_ERROR(importer->scan(ignored, [](double) {}));
-    }
-    return importer->triangles(sink, progress);
+    if (!turn_) return files_.triangles(index, sink, progress);
+    const Placement turn = yUpToZUp();
+    std::vector<Triangle> turned;
+    const auto turning = [&](std::span<const Triangle> triangles) {
+        turned.clear();
+        turn.append(triangles, turned);
+        return sink(turned);
+    };
+    return files_.triangles(index, turning, progress);
 }
 
 }  // namespace iwalk

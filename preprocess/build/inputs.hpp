@@ -1,24 +1,23 @@
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "preprocess/build/budget.hpp"
 #include "preprocess/build/build.hpp"
-#include "preprocess/import/importer.hpp"
+#include "preprocess/import/importer_list.hpp"
 
 namespace iwalk {
 
-using ImporterFactory =
-    std::function<Result<std::unique_ptr<Importer>>(const std::string&, const ImportLimits&)>;
+// The files that are meant by what stands on the command line, in order: names of files as they are,
+// directories with all models below them, and patterns (*, ?, [...]) with all files that match. Fails where
+// there is none.
+Result<std::vector<std::string>> findInputs(const std::vector<std::string>& names);
 
-// All inputs of a build as one: each is scanned, then each is streamed. They stay open in between while
-// memory lasts; where there are too many for that, each is opened and scanned a second time.
+// All inputs of a build as one: each is scanned, then each is streamed; turned so that z is up.
 class Inputs {
   public:
-    Inputs(const std::vector<std::string>& paths, const Budget& budget, std::string spillDirectory,
+    Inputs(const BuildOptions& options, const Budget& budget, const std::string& spillDirectory,
            ImporterFactory factory);
 
     // First pass. Positions of all vertices go to `vertices`.
@@ -27,13 +26,8 @@ class Inputs {
     Result<ImportCounts> triangles(std::size_t index, const TriangleSink& sink, const ProgressSink& progress);
 
   private:
-    Result<std::unique_ptr<Importer>> open(std::size_t index) const;
-
-    std::vector<std::string> paths_;
-    ImportLimits limits_;
-    bool keep_;
-    ImporterFactory factory_;
-    std::vector<std::unique_ptr<Importer>> importers_;
+    bool turn_;
+    ImporterList files_;
 };
 
 }  // namespace iwalk

@@ -6,6 +6,7 @@
 
 #include "common/settings.hpp"
 #include "preprocess/build/compact.hpp"
+#include "preprocess/build/inputs.hpp"
 #include "preprocess/command/commands.hpp"
 #include "preprocess/command/progress_bar.hpp"
 
@@ -52,11 +53,13 @@ Result<void> run(Work work) {
 
 }  // namespace
 
-Result<void> runBuild(const BuildOptions& options) {
+Result<void> runBuild(BuildOptions options) {
+    ASSIGN_OR_RETURN(options.inputs, findInputs(options.inputs));
     return run([&](Progress& progress) { return buildDataset(options, progress); });
 }
 
-Result<void> runInsert(const BuildOptions& options) {
+Result<void> runInsert(BuildOptions options) {
+    ASSIGN_OR_RETURN(options.inputs, findInputs(options.inputs));
     return run([&](Progress& progress) { return insertIntoDataset(options, progress); });
 }
 

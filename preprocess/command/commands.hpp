@@ -9,9 +9,10 @@
 // The subcommands, after the command line is understood. What they have to say goes to standard output.
 namespace iwalk {
 
-Result<void> runBuild(const BuildOptions& options);
-Result<void> runInsert(const BuildOptions& options);
+Result<void> runBuild(BuildOptions options);
+Result<void> runInsert(BuildOptions options);
 Result<void> runCompact(const std::string& dataset);
+Result<void> runMeasure(const BuildOptions& options, bool json);
 Result<void> runGenerate(const GenerateOptions& options);
 // `picture`: a PNG file to draw the octree into; empty: none.
 Result<void> runInfo(const std::string& dataset, bool json, const std::string& picture);

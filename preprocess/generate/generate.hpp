@@ -11,7 +11,7 @@ namespace iwalk {
 inline constexpr std::uint64_t kLeastGenerated = 1'000, kMostGenerated = 1'000'000'000;  // triangles
 
 struct GenerateOptions {
-    std::string scene;                    // sphere, plant or isosurface
+    std::string scene;                    // sphere, plant, isosurface, terrain, or one of hard.hpp
     std::uint64_t triangles = 1'000'000;  // wanted: kLeastGenerated to kMostGenerated
     std::uint64_t seed = 1;
     std::string output;  // a PLY file; replaced when it is there

@@ -41,19 +41,19 @@ Result<void> checkPlace(const std::string& path) {
 
 }  // namespace
 
-Result<std::unique_ptr<PlyOutput>> PlyOutput::create(const std::string& path, bool colors,
+Result<std::unique_ptr<PlyOutput>> PlyOutput::create(const std::string& path, VertexLayout layout,
                                                      const std::string& note) {
     RETURN_IF_ERROR(checkPlace(path));
     ASSIGN_OR_RETURN(OutputFile file, OutputFile::create(temporaryName(path)));
-    std::unique_ptr<PlyOutput> output(new PlyOutput(path, std::move(file), colors, note));
+    std::unique_ptr<PlyOutput> output(new PlyOutput(path, std::move(file), layout, note));
     RETURN_IF_ERROR(output->file_.write(std::as_bytes(std::span<const char>(output->header()))));
     return output;
 }
 
-PlyOutput::PlyOutput(std::string path, OutputFile file, bool colors, std::string note)
+PlyOutput::PlyOutput(std::string path, OutputFile file, VertexLayout layout, std::string note)
     : path_(std::move(path)),
       file_(std::move(file)),
-      colors_(colors),
+      layout_(layout),
       note_(std::move(note)),
       buffer_(kBufferBytes) {}
 
@@ -66,8 +66,9 @@ std::string PlyOutput::header() const {
     const std::string vertices = std::to_string(vertices_), triangles = std::to_string(triangles_);
     const std::string padding(2 * kCountDigits - vertices.size() - triangles.size(), '-');
     return "ply\nformat binary_little_endian 1.0\ncomment " + note_ + "\nelement vertex " + vertices +
-           "\nproperty float x\nproperty float y\nproperty float z\n" +
-           (colors_ ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "") +
+           fmt::format("\nproperty {0} x\nproperty {0} y\nproperty {0} z\n",
+                       layout_.doubles ? "double" : "float") +
+           (layout_.colors ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "") +
            "element face " + triangles + "\nproperty list uchar int vertex_indices\ncomment " + padding +
            "\nend_header\n";
 }

@@ -10,9 +10,9 @@ constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
 }  // namespace
 
 void ByteStream::seek(std::uint64_t offset) {
-    const std::uint64_t here = this->offset();
-    if (offset >= here && offset - here <= size_ - begin_) {
-        begin_ += static_cast<std::size_t>(offset - here);
+    const std::uint64_t first = loaded_ - size_;  // in the buffer
+    if (offset >= first && offset <= loaded_) {
+        begin_ = static_cast<std::size_t>(offset - first);
         return;
     }
     begin_ = size_ = 0;

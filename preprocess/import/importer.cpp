@@ -1,20 +1,35 @@
 #include "preprocess/import/importer.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
+#include "preprocess/import/assembly.hpp"
+#include "preprocess/import/foreign_importer.hpp"
 #include "preprocess/import/obj_importer.hpp"
 #include "preprocess/import/ply_importer.hpp"
+#include "preprocess/import/stl_importer.hpp"
+#include "preprocess/import/vrml_importer.hpp"
 
 namespace iwalk {
 namespace {
+
+// Models that are read here; that another program reads, of many more that it can; images that are heights.
+constexpr std::array<std::string_view, 5> kOwn{".obj", ".ply", ".stl", ".vrml", ".wrl"};
+constexpr std::array<std::string_view, 8> kForeign{".3ds", ".3mf",  ".dae", ".fbx",
+                                                   ".glb", ".gltf", ".off", ".x"};
+constexpr std::array<std::string_view, 6> kHeightMaps{".exr", ".hdr", ".pgm", ".png", ".tif", ".tiff"};
+
+bool isOneOf(std::string_view extension, std::span<const std::string_view> list) {
+    return std::ranges::find(list, extension) != list.end();
+}
 
 // Devices, pipes and directories have no size to check claims against.
 Result<std::unique_ptr<RandomAccessFile>> openModel(const std::string& path) {
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
-    if (is_directory(status)) return fail("{}: is a directory: give a PLY or OBJ file", path);
+    if (is_directory(status)) return fail("{}: is a directory: give a model file", path);
     if (exists(status) && !is_regular_file(status))
-        return fail("{}: is not a regular file: give a PLY or OBJ file", path);
+        return fail("{}: is not a regular file: give a model file", path);
     ASSIGN_OR_RETURN(auto file, openForReading(path));
     if (file->size() == 0) return fail("{}: is empty", path);
     return file;
@@ -38,7 +53,16 @@ Result<std::unique_ptr<Importer>> openImporter(const std::string& path, const Im
         return openPly(path, std::move(file), limits);
     }
     if (extension == ".obj") return openObj(path, std::move(file), limits);
-    return fail("{}: unknown kind of model: PLY (.ply) and OBJ (.obj) can be read", path);
+    if (extension == ".stl") return openStl(path, std::move(file));
+    if (extension == ".wrl" || extension == ".vrml") return openVrml(path, std::move(file), limits);
+    if (extension == ".json") return openAssembly(path, std::move(file), limits);
+    if (isOneOf(extension, kHeightMaps)) return openForeign(path, ForeignKind::heights, file->size(), limits);
+    return openForeign(path, ForeignKind::triangles, file->size(), limits);
+}
+
+bool isModelName(const std::string& path) {
+    const std::string extension = lowerExtension(path);
+    return isOneOf(extension, kOwn) || isOneOf(extension, kForeign);
 }
 
 }  // namespace iwalk

@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -21,12 +22,15 @@ struct Corner {
 };
 using Triangle = std::array<Corner, 3>;
 
+// RGBA8 of what has no colour among others that have: light grey, opaque.
+inline constexpr std::uint32_t kPlainColor = 0xffc8c8c8;
+
 // What a first look at an input tells.
 struct ImportSummary {
     std::uint64_t vertices = 0;  // with finite positions
-    // No more triangles than this will come: exact for OBJ; for binary PLY, where it is what the bytes have
-    // room for, three times as many as there are, as a rule (ProgressSink is the one for progress); 0 when
-    // unknown.
+    // No more triangles than this will come: exact for texts other than PLY, and STL; for binary PLY, where
+    // it is what the bytes have room for, three times as many as there are, as a rule (ProgressSink is the
+    // one for progress); 0 when unknown.
     std::uint64_t triangleBound = 0;
     ModelBox bounds;  // of the finite vertices
     // The spacing of representable numbers at the largest |coordinate|: 2^-23 of its power of two for 32-bit
@@ -58,15 +62,33 @@ class Importer {
     virtual Result<ImportSummary> scan(const VertexSink& vertices, const ProgressSink& progress) = 0;
     // Hands all triangles on in file order, polygons fanned, in batches of some thousands.
     virtual Result<ImportCounts> triangles(const TriangleSink& sink, const ProgressSink& progress) = 0;
+    // False when nothing is kept from scan() to triangles(), so that triangles() can do without it.
+    virtual bool needsScan() const { return true; }
+};
+
+// What people say about inputs that the files do not.
+struct ImportChoices {
+    bool yUp = false;  // y is up in them: turned, so that z is
+    // Of height maps: the distance of neighbouring samples, and of heights that differ by 1, in model units;
+    // and the height that stands for a hole.
+    double spacing = 1, heightScale = 1;
+    std::optional<double> noData;
 };
 
 struct ImportLimits {
     std::uint64_t memoryBytes = 0;  // for one importer, buffers and kept vertices included; at least 16 MiB
     std::string spillDirectory;     // exists; what the importer makes there is gone when it is, or is killed
+    ImportChoices choices{};
+    // How many assemblies the file is part of, and how often they place it in all.
+    unsigned nesting = 0;
+    std::uint64_t copies = 1;
 };
 
-// Picks the reader by the file's first bytes and its extension (.ply, .obj). Fails when there is none for it,
-// or the file cannot be opened.
+// Picks the reader by the file's first bytes and its extension. Fails when there is none for it, or the file
+// cannot be opened.
 Result<std::unique_ptr<Importer>> openImporter(const std::string& path, const ImportLimits& limits);
+
+// Whether a file of this name is taken for a model when it is found in a directory.
+bool isModelName(const std::string& path);
 
 }  // namespace iwalk

@@ -18,14 +18,6 @@
 namespace iwalk {
 namespace {
 
-// Decimal text does not say how precise it is. Most OBJ files hold printed floats; coordinates far from 0
-// against the model's size (map coordinates) only make sense as doubles.
-double textPrecision(const ModelBox& bounds) {
-    constexpr double kFarAway = 1024;
-    const bool farAway = largestCoordinate(bounds) >= kFarAway * bounds.edge();
-    return coordinateSpacing(bounds, farAway ? 52 : 23);
-}
-
 class ObjImporter : public Importer {
   public:
     ObjImporter(const std::string& path, std::unique_ptr<RandomAccessFile> file, const ImportLimits& limits)

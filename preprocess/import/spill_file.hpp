@@ -20,6 +20,7 @@ class SpillFile {
 
     Result<void> writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
     Result<void> readAt(std::uint64_t offset, std::span<std::byte> bytes) const;
+    int descriptor() const { return descriptor_; }  // for another program to write to
 
   private:
     SpillFile(std::string directory, int descriptor)

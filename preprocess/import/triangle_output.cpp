@@ -3,14 +3,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "preprocess/import/vertex_output.hpp"
 #include "preprocess/import/vertex_store.hpp"
 
 namespace iwalk {
 namespace {
-
-bool isFinite(const glm::dvec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 // Of a triangle without area any direction is as good as another.
 glm::vec3 faceNormal(const Triangle& t) {

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "preprocess/import/vertex_output.hpp"
+
 namespace iwalk {
 namespace {
-
-bool isFinite(const glm::dvec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 glm::dvec3 point(const VertexBatch& batch, VertexColumn first, std::size_t row) {
     const auto column = static_cast<std::size_t>(first);
@@ -42,6 +40,12 @@ double coordinateSpacing(const ModelBox& bounds, int bits) {
     const int smallestExponent = bits == 23 ? -126 : -1022;  // below it spacing stays the same
     const int exponent = largest == 0 ? 0 : std::max(std::ilogb(largest), smallestExponent);
     return std::ldexp(1.0, exponent - bits);
+}
+
+double textPrecision(const ModelBox& bounds) {
+    constexpr double kFarAway = 1024;
+    const bool farAway = largestCoordinate(bounds) >= kFarAway * bounds.edge();
+    return coordinateSpacing(bounds, farAway ? 52 : 23);
 }
 
 VertexStore::VertexStore(VertexFormat format, std::uint64_t memoryBytes, const std::string& spillDirectory)

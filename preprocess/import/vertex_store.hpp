@@ -100,4 +100,8 @@ double largestCoordinate(const ModelBox& bounds);  // the largest |coordinate|; 
 // where all are 0, at 1.
 double coordinateSpacing(const ModelBox& bounds, int bits);
 
+// The same for decimal text, which does not say how precise it is. Most files hold printed floats;
+// coordinates far from 0 against the model's size (map coordinates) only make sense as doubles.
+double textPrecision(const ModelBox& bounds);
+
 }  // namespace iwalk

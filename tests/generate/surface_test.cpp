@@ -57,7 +57,7 @@ TEST_P(SurfaceTest, MakesADataset) {
     EXPECT_EQ(manifest->colors, std::string(GetParam()) != "sphere");
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, SurfaceTest, testing::Values("sphere", "plant", "isosurface"),
+INSTANTIATE_TEST_SUITE_P(Scenes, SurfaceTest, testing::Values("sphere", "plant", "isosurface", "terrain"),
                          [](const auto& scene) { return std::string(scene.param); });
 
 TEST(SphereTest, IsClosed) {

@@ -1,0 +1,169 @@
+// Files that libraries read, in the program iwalk-import: it must lie beside this one.
+#include <gmock/gmock.h>
+
+#include "preprocess/import/exchange.hpp"
+#include "preprocess/import/import_process.hpp"
+#include "tests/import/import_fixture.hpp"
+
+namespace iwalk {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+
+class ForeignTest : public ImportTest {
+  protected:
+    Result<Imported> importHeights(const std::string& name, const ImportChoices& choices) {
+        Imported out;
+        ASSIGN_OR_RETURN(const auto importer,
+                         openImporter(directory_.path(name), {kMemory, directory_.path(""), choices}));
+        const TriangleSink triangles = [&](std::span<const Triangle> batch) {
+            out.triangles.insert(out.triangles.end(), batch.begin(), batch.end());
+            return Result<void>();
+        };
+        ASSIGN_OR_RETURN(out.summary, importer->scan({}, {}));
+        ASSIGN_OR_RETURN(out.counts, importer->triangles(triangles, {}));
+        return out;
+    }
+    static constexpr std::uint64_t kMemory = std::uint64_t{256} << 20;
+};
+
+const std::string kOff = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 2.5\n3 0 1 2\n3 0 2 3\n";
+
+// One triangle in a buffer of 36 bytes, two nodes that show it, one inside the other; base colour red / 2.
+const std::string kGltf = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+  "nodes": [{"mesh": 0, "translation": [10, 0, 0], "children": [1]}, {"mesh": 0, "scale": [2, 2, 2], "translation": [0, 5, 0]}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+  "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0, 0, 1]}}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}],
+  "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+
+TEST_F(ForeignTest, off) {
+    directory_.write("a.off", kOff);
+    const auto read = import("a.off", kMemory);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->counts.triangles, 2u);
+    EXPECT_EQ(read->summary.triangleBound, 2u);
+    EXPECT_EQ(read->summary.bounds.max, glm::dvec3(1, 1, 2.5));
+    EXPECT_EQ(read->vertices.size(), 6u);
+}
+
+TEST_F(ForeignTest, gltfNodesAndColors) {
+    directory_.write("a.gltf", kGltf);
+    const auto read = import("a.gltf", kMemory);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    ASSERT_EQ(read->triangles.size(), 2u);
+    EXPECT_EQ(read->triangles[0][1].position, glm::dvec3(11, 0, 0));
+    EXPECT_EQ(read->triangles[1][2].position, glm::dvec3(10, 7, 0));
+    EXPECT_TRUE(read->summary.colors);
+    EXPECT_EQ(read->triangles[0][0].color, 0xff0000bc);  // half of linear red is 188 in sRGB
+}
+
+TEST_F(ForeignTest, badFilesEndInOneLine) {
+    EXPECT_EQ(errorOf("a.xyz", "just text"), "unknown kind of model: there is no reader for '.xyz' files");
+    EXPECT_EQ(errorOf("a", "just text"), "unknown kind of model: there is no reader for '' files");
+    EXPECT_THAT(errorOf("a.off", kOff.substr(0, 12)),
+                AnyOf(HasSubstr("cannot be read"), HasSubstr("has no meshes")));
+    EXPECT_THAT(errorOf("a.glb", "glTF and rubbish"), HasSubstr("cannot be read"));
+    EXPECT_THAT(errorOf("a.tif", "II*\0rubbish"), HasSubstr("cannot be read as an image of heights"));
+}
+
+// A file may name others, but only in its folder.
+TEST_F(ForeignTest, otherFoldersAreNotRead) {
+    std::filesystem::create_directory(directory_.path("inner"));
+    std::string text = kGltf;
+    const std::size_t uri = text.find("data:"), end = text.find('"', uri);
+    text.replace(uri, end - uri, "../outside.bin");
+    directory_.write("outside.bin", std::string(36, '\0'));
+    directory_.write("inner/a.gltf", text);
+    EXPECT_FALSE(import("inner/a.gltf", kMemory).ok());
+    directory_.write("a.gltf", text.replace(text.find("../outside.bin"), 3, ""));
+    EXPECT_TRUE(import("a.gltf", kMemory).ok());
+}
+
+TEST_F(ForeignTest, limitsOfTheProgram) {
+    directory_.write("a.off", kOff);
+    const auto run = [&](const ImportProcessLimits& limits) {
+        const auto output = SpillFile::create(directory_.path(""));
+        const auto done =
+            runImportProcess(directory_.path("a.off"), false, limits, **output, directory_.path(""));
+        return done ? std::string() : done.error().message;
+    };
+    EXPECT_EQ(run({kMemory, 1 << 20, 10, 100}), "");
+    EXPECT_THAT(run({1, 1 << 20, 10, 100}), AnyOf(HasSubstr("memory"), HasSubstr("crashed")));
+    EXPECT_THAT(run({kMemory, 100, 10, 100}), HasSubstr("too many for a file of its size"));
+    EXPECT_THAT(run({kMemory, 1 << 20, 10, 0}), HasSubstr("took longer than 0 s"));
+}
+
+TEST_F(ForeignTest, whatTheProgramWritesIsChecked) {
+    const auto file = SpillFile::create(directory_.path(""));
+    ExchangeWriter writer((*file)->descriptor());
+    const std::vector<Triangle> triangles(3);
+    ASSERT_TRUE(writer.header({}).ok());
+    ASSERT_TRUE(writer.block(std::as_bytes(std::span(triangles))).ok());
+    ASSERT_TRUE(writer.finish().ok());
+    const std::string name = "a";
+    const auto blocks = [&]() -> Result<std::size_t> {
+        ExchangeReader reader(**file, name);
+        if (auto header = reader.header(); !header) return header.error();
+        for (std::size_t bytes = 0;;) {
+            ASSIGN_OR_RETURN(const auto block, reader.block());
+            if (block.empty()) return bytes;
+            bytes += block.size();
+        }
+    };
+    EXPECT_EQ(blocks().value(), sizeof(Triangle) * 3);
+    // Any byte but the header's flags and sizes.
+    const std::uint64_t end = sizeof(ExchangeHeader) + 2 * sizeof(ExchangeBlock) + 3 * sizeof(Triangle);
+    for (std::uint64_t at = 0; at < end; at += 7) {
+        if (at >= 8 && at < sizeof(ExchangeHeader)) continue;
+        std::byte byte{};
+        ASSERT_TRUE((*file)->readAt(at, std::span(&byte, 1)).ok());
+        const std::byte flipped = ~byte;
+        ASSERT_TRUE((*file)->writeAt(at, std::span(&flipped, 1)).ok());
+        EXPECT_FALSE(blocks().ok()) << at;
+        ASSERT_TRUE((*file)->writeAt(at, std::span(&byte, 1)).ok());
+    }
+}
+
+// Samples of 16 bits, the first row the farthest.
+std::string pgm(int columns, int rows, const std::vector<int>& samples) {
+    std::string out = fmt::format("P5\n{} {}\n65535\n", columns, rows);
+    for (const int sample : samples) out += {static_cast<char>(sample >> 8), static_cast<char>(sample & 255)};
+    return out;
+}
+
+TEST_F(ForeignTest, heightMaps) {
+    directory_.write("a.pgm", pgm(3, 2, {100, 200, 65535, 0, 1, 2}));
+    ImportChoices choices;
+    choices.spacing = 10, choices.heightScale = 0.5;
+    const auto read = importHeights("a.pgm", choices);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->triangles.size(), 4u);
+    EXPECT_EQ(read->summary.bounds.min, glm::dvec3(0, 0, 0));
+    EXPECT_EQ(read->summary.bounds.max, glm::dvec3(20, 10, 32767.5));
+    const Triangle& t = read->triangles[0];
+    EXPECT_EQ(t[0].position, glm::dvec3(0, 0, 0));
+    EXPECT_EQ(t[1].position, glm::dvec3(10, 0, 0.5));
+    EXPECT_EQ(t[2].position, glm::dvec3(10, 10, 100));
+}
+
+TEST_F(ForeignTest, heightMapsWithHoles) {
+    directory_.write("a.pgm", pgm(3, 2, {5, 5, 9, 5, 5, 5}));
+    ImportChoices choices;
+    choices.noData = 9;
+    EXPECT_EQ(importHeights("a.pgm", choices)->triangles.size(), 3u);
+    directory_.write("a.pgm", pgm(3, 2, {5, 9, 5, 5, 9, 5}));
+    EXPECT_EQ(importHeights("a.pgm", choices)->triangles.size(), 0u);
+}
+
+TEST_F(ForeignTest, badHeightMaps) {
+    const std::string whole = pgm(30, 30, std::vector<int>(900, 7));
+    EXPECT_THAT(errorOf("a.pgm", whole.substr(0, 400)), HasSubstr("cut short"));
+    EXPECT_THAT(errorOf("a.pgm", pgm(1, 3, {1, 2, 3})), HasSubstr("2 x 2 to"));
+    EXPECT_NE(errorOf("a.pgm", "P5\n2000000000 2000000000\n65535\n"), "");
+}
+
+}  // namespace
+}  // namespace iwalk
