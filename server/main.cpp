@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "common/token.hpp"
 #include "common/version.hpp"
 #include "server/draw/gl_context.hpp"
 #include "server/frame/frame_loop.hpp"
@@ -95,8 +96,12 @@ Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& da
         rank.pipeline,
         TilePipeline::create(dataset, options.wall, static_cast<std::size_t>(sync.rank()), options.settings));
     if (sync.rank() != 0) return {};
-    ASSIGN_OR_RETURN(rank.gateway,
-                     Gateway::listen(options.address, options.port, makeWelcome(options, dataset, hosts)));
+    std::string token;
+    if (!options.tokenFile.empty()) {
+        ASSIGN_OR_RETURN(token, readToken(options.tokenFile));
+    }
+    ASSIGN_OR_RETURN(rank.gateway, Gateway::listen(options.address, options.port,
+                                                   makeWelcome(options, dataset, hosts), token));
     return {};
 }
 
@@ -120,7 +125,7 @@ int serve(Sync& sync, ServerOptions& options) {
     if (sync.rank() == 0) announce(options, dataset, rank);
     runFrames({sync, *rank.pipeline, rank.gateway.get(),
                options.wall.tiles[static_cast<std::size_t>(sync.rank())].name, options.outputDirectory,
-               nearPlane(options.settings, dataset.manifest), stopRequested});
+               dataset, options.wall, options.settings, stopRequested});
     return EXIT_SUCCESS;
 }
 

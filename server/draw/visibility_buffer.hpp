@@ -19,9 +19,10 @@ class VisibilityBuffer {
     VisibilityBuffer(const VisibilityBuffer&) = delete;
     VisibilityBuffer& operator=(const VisibilityBuffer&) = delete;
 
-    // px: the largest block. With `counts`, programs may count in an image of 32-bit integers
-    // (kCountsBinding).
-    Result<void> prepare(int width, int height, bool counts);
+    // px: the largest block.
+    Result<void> prepare(int width, int height);
+    // Whether programs may count in an image of 32-bit integers (kCountsBinding).
+    void setCounts(bool counts);
 
     void clear();          // nothing drawn; one layer
     void beginRest();      // goes on in the second layer; wants the block's viewport and the depth test
@@ -33,6 +34,8 @@ class VisibilityBuffer {
 
     // Rows of `width` px from the block's corner, as drawn so far.
     void readDepths(int width, int height, std::vector<float>& depths) const;
+    // Appends those of some rows of a rectangle.
+    void sampleDepths(int width, int height, int x, int y, std::vector<float>& depths) const;
     // The second layer's number where it has one, even where equal depths say otherwise.
     void readNumbers(int width, int height, std::vector<std::uint32_t>& numbers) const;
 
@@ -43,6 +46,7 @@ class VisibilityBuffer {
     Result<void> prepare(Layer& layer, int width, int height);
 
     Layer layers_[2];
+    int width_ = 0, height_ = 0;                                   // px
     std::uint32_t restProgram_ = 0, emptyArray_ = 0, counts_ = 0;  // GL names; 0: no counts
     bool rest_ = false;
 };

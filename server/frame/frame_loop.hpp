@@ -15,8 +15,10 @@ struct FrameLoopParts {
     TilePipeline& pipeline;
     Gateway* gateway = nullptr;  // on rank 0
     std::string tileName;
-    std::string outputDirectory;    // --present file: where tiles are written; empty: nowhere
-    double near = 0;                // model units
+    std::string outputDirectory;  // --present file: where tiles are written; empty: nowhere
+    const Dataset& dataset;
+    const Wall& wall;
+    Settings settings;              // to begin with
     const std::atomic<bool>& stop;  // rank 0 ends the wall when it is set
 };
 

@@ -65,7 +65,7 @@ Result<Dataset> openDataset(const std::string& path) {
 
 Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& dataset, const Wall& wall,
                                                            std::size_t tile, const Settings& settings) {
-    std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile, settings.level));
+    std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile));
     const PixelRect& rect = wall.tiles[tile].onScreen;
     ASSIGN_OR_RETURN(pipeline->renderer_, Renderer::create(rect, lookOf(dataset, settings)));
     ASSIGN_OR_RETURN(const std::uint64_t bytes, arenaBytes(dataset.hierarchy, settings.cacheBytes));
@@ -75,14 +75,7 @@ Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& datase
                                                    Arena(std::move(memory), Renderer::kArenaAlignment),
                                                    settings.fetchThreads);
     pipeline->pages_.emplace(dataset.hierarchy, *pipeline->cache_, *pipeline->renderer_);
-    if (settings.mode == Mode::plp)
-        pipeline->plp_.emplace(dataset.hierarchy, pipeline->visibility_, settings);
-    if (settings.mode == Mode::cplp) {
-        ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion,
-                         makeOcclusion(settings.occlusion, *pipeline->renderer_));
-        pipeline->conservative_.emplace(pipeline->visibility_, *pipeline->cache_, *pipeline->renderer_,
-                                        *pipeline->pages_, std::move(occlusion));
-    }
+    RETURN_IF_ERROR(pipeline->apply(settings));
     return pipeline;
 }
 
@@ -108,9 +101,12 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
 
     const TileView view = viewOf(state);
     renderer_->beginFrame(view);
+    depths_.clear();
     if (plp_) plp_->choose(cut_, {view.projection, view.tile, view.eye, view.near}, *cache_, stats);
     for (const Block& block : blocksOf(view.tile)) drawBlock(BlockView(view, block), stats);
     if (conservative_) conservative_->endFrame();
+
+    addDepths(depths_, state.near, stats);
 
     stats.visibilityMs += stats.pyramidMs + stats.testMs;
     stats.drawMs = watch.lap() - stats.visibilityMs - stats.fetchWaitMs;
@@ -132,6 +128,7 @@ void TilePipeline::drawBlock(const BlockView& view, protocol::TileStats& stats) 
         pages_->drawAll(view, visible, stats);
         renderer_->finish();
     }
+    renderer_->sampleBlockDepths(depths_);
     cache_->release();
 
     addCounters(cache_->counters(), stats);
@@ -140,6 +137,18 @@ void TilePipeline::drawBlock(const BlockView& view, protocol::TileStats& stats) 
 double nearPlane(const Settings& settings, const Manifest& manifest) {
     if (settings.near > 0) return settings.near;
     return 1e-5 * glm::distance(manifest.bounds.min, manifest.bounds.max);
+}
+
+Result<void> TilePipeline::apply(const Settings& settings) {
+    RETURN_IF_ERROR(renderer_->setLook(lookOf(dataset_, settings)));
+    cut_ = cutAtLevel(dataset_.hierarchy, settings.level);
+    plp_.reset();
+    conservative_.reset();
+    if (settings.mode == Mode::plp) plp_.emplace(dataset_.hierarchy, visibility_, settings);
+    if (settings.mode != Mode::cplp) return {};
+    ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion, makeOcclusion(settings.occlusion, *renderer_));
+    conservative_.emplace(visibility_, *cache_, *renderer_, *pages_, std::move(occlusion));
+    return {};
 }
 
 }  // namespace iwalk
