@@ -7,6 +7,7 @@
 
 #include "client/wall_check.hpp"
 #include "common/file.hpp"
+#include "common/token.hpp"
 
 namespace iwalk::client {
 namespace {
@@ -48,7 +49,11 @@ Result<std::string> run(const Options& options, const Playback::Progress& progre
     ASSIGN_OR_RETURN(const std::vector<Camera> path, loadCameraPath(options.path));
     if (!options.report.empty()) RETURN_IF_ERROR(checkReportPlace(options.report));
 
-    ASSIGN_OR_RETURN(const auto link, ServerLink::connect(options.server, timeoutFromNow(options)));
+    protocol::Hello hello;
+    if (!options.tokenFile.empty()) {
+        ASSIGN_OR_RETURN(hello.token, readToken(options.tokenFile));
+    }
+    ASSIGN_OR_RETURN(const auto link, ServerLink::connect(options.server, hello, timeoutFromNow(options)));
     RETURN_IF_ERROR(checkWall(link->welcome()));
     std::unique_ptr<Capture> capture;
     if (!options.captureDir.empty()) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 
 #include "common/result.hpp"
@@ -23,13 +25,21 @@ enum class Pace : std::uint8_t {
 // What the command line asks for.
 struct Options {
     Address server;
-    std::string path;        // camera path to play, JSON
+    std::string tokenFile;   // of the secret that the server asks for; empty: none
+    std::string path;        // camera path to play, JSON; empty: fly by hand
     std::string captureDir;  // empty: no pictures
     bool captureDepth = false;
     std::string report;  // file; empty: none
     Pace pace = Pace::lockstep;
     double fps = 30;             // frames of the path per second; realtime only
     double timeoutSeconds = 10;  // to reach the server, and then to be given control
+
+    // Of flying by hand.
+    std::string record;                      // camera path to write; empty: none
+    std::string views = "iwalk-views.json";  // saved views
+    glm::dvec3 up{0, 0, 1};                  // the model's
+    std::optional<double> fovY;              // degrees, of the whole wall; else what the wall shows
+    bool preview = true;
 };
 
 }  // namespace iwalk::client

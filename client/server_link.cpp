@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/connect.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 #include <charconv>
@@ -55,10 +56,11 @@ Result<Address> parseAddress(const std::string& text) {
 
 ServerLink::ServerLink(const Address& server) : name_(fmt::format("{}:{}", server.host, server.port)) {}
 
-Result<std::unique_ptr<ServerLink>> ServerLink::connect(const Address& server, Clock::time_point deadline) {
+Result<std::unique_ptr<ServerLink>> ServerLink::connect(const Address& server, const protocol::Hello& hello,
+                                                        Clock::time_point deadline) {
     std::unique_ptr<ServerLink> link(new ServerLink(server));
     RETURN_IF_ERROR(link->reach(server, deadline));
-    RETURN_IF_ERROR(link->greet(deadline));
+    RETURN_IF_ERROR(link->greet(hello, deadline));
     return link;
 }
 
@@ -96,8 +98,8 @@ error_code ServerLink::tryConnect(const tcp::resolver::results_type& endpoints, 
     return asio::error::timed_out;
 }
 
-Result<void> ServerLink::greet(Clock::time_point deadline) {
-    RETURN_IF_ERROR(send(protocol::Hello{}));
+Result<void> ServerLink::greet(const protocol::Hello& hello, Clock::time_point deadline) {
+    RETURN_IF_ERROR(send(hello));
     ASSIGN_OR_RETURN(const std::optional<Message> message, receive(deadline));
     if (!message) return fail("{} took the connection and does not answer; is it an iwalk-server?", name_);
     const auto* welcome = std::get_if<protocol::Welcome>(&*message);
@@ -118,7 +120,9 @@ Result<void> ServerLink::send(const Message& message) {
 
 Result<std::optional<Message>> ServerLink::receive(Clock::time_point deadline) {
     if (!reading_) readHeader();
-    if (!runUntil(deadline, arrived_)) return std::optional<Message>();
+    if (!runUntil(deadline, ready_)) return std::optional<Message>();
+    ready_ = false;
+    if (!arrived_) return std::optional<Message>();  // woken
     reading_ = arrived_ = false;
     if (!message_->ok()) return message_->error();
     Message message = std::move(*message_).value();
@@ -161,7 +165,11 @@ void ServerLink::readPayload() {
 
 void ServerLink::finish(Result<Message> message) {
     message_ = std::move(message);
-    arrived_ = true;
+    arrived_ = ready_ = true;
+}
+
+void ServerLink::wake() {
+    asio::post(io_, [this] { ready_ = true; });
 }
 
 bool ServerLink::runUntil(Clock::time_point deadline, const bool& done) {

@@ -208,26 +208,36 @@ void tileStatsFields(Io& io, M& m) {
     io.integer(m.triangles), io.integer(m.ranges), io.integer(m.guessTriangles);
     io.integer(m.hiddenPages), io.integer(m.hiddenRanges), io.real(m.screenErrorPx);
     io.integer(m.fetchedBytes), io.integer(m.prefetchedBytes), io.integer(m.stalls), io.integer(m.badPages);
-    io.integer(m.peakRssBytes);
+    io.integer(m.peakRssBytes), io.real(m.nearDepth), io.real(m.midDepth);
 }
-constexpr std::size_t kTileStatsBytes = 4 + 19 * 8;
+constexpr std::size_t kTileStatsBytes = 4 + 21 * 8;
+
+template <class Io, class M>
+void cameraFields(Io& io, M& m) {
+    vectorFields(io, m.eye), vectorFields(io, m.target), vectorFields(io, m.up), io.real(m.fovY);
+    const Result<void> camera = checkCamera(m);
+    io.require(camera.ok(), camera.ok() ? "" : camera.error().message.c_str());
+}
+
+template <class Io, class M>
+void settingsFields(Io& io, M& settings) {
+    io.array(settings, kMaxSettings, 2 + 2,
+             [&](auto& setting) { io.text(setting.name), io.text(setting.value); });
+}
 
 // Constness of the message is what tells writing from reading here.
 template <class T, class M>
 concept Is = std::is_same_v<std::remove_const_t<T>, M>;
 
 void fields(auto& io, Is<Hello> auto& m) {
-    io.version(m.version), io.flag(m.control);
+    io.version(m.version), io.flag(m.control), io.flag(m.preview), io.text(m.token);
 }
 
 void fields(auto& io, Is<CameraRequest> auto& m) {
     constexpr std::uint8_t kAllFlags = kLockstep | kCaptureColor | kCaptureDepth;
     io.integer(m.sequence), io.integer(m.flags, std::uint8_t{0}, kAllFlags);
     io.require(m.sequence != 0, "sequence number 0");  // stands for somebody else's frame in FrameDone
-    vectorFields(io, m.camera.eye), vectorFields(io, m.camera.target), vectorFields(io, m.camera.up);
-    io.real(m.camera.fovY);
-    const Result<void> camera = checkCamera(m.camera);
-    io.require(camera.ok(), camera.ok() ? "" : camera.error().message.c_str());
+    cameraFields(io, m.camera);
 }
 
 void fields(auto& io, Is<Welcome> auto& m) {
@@ -236,16 +246,15 @@ void fields(auto& io, Is<Welcome> auto& m) {
     vectorFields(io, m.bounds.min), vectorFields(io, m.bounds.max);
     io.integer(m.wallWidth, 0, kMaxWallPx), io.integer(m.wallHeight, 0, kMaxWallPx);
     io.array(m.tiles, kMaxTiles, kMinTileInfoBytes, [&](auto& tile) { tileInfoFields(io, tile); });
-    io.array(m.settings, kMaxSettings, 2 + 2,
-             [&](auto& setting) { io.text(setting.name), io.text(setting.value); });
+    settingsFields(io, m.settings);
 }
 
 void fields(auto& io, Is<Control> auto& m) {
-    io.flag(m.granted);
+    io.flag(m.granted), io.integer(m.waiting);
 }
 
 void fields(auto& io, Is<FrameDone> auto& m) {
-    io.integer(m.sequence), io.integer(m.frame), io.real(m.timeMs);
+    io.integer(m.sequence), io.integer(m.frame), io.real(m.timeMs), cameraFields(io, m.camera);
     io.array(m.tiles, kMaxTiles, kTileStatsBytes, [&](auto& tile) { tileStatsFields(io, tile); });
 }
 
@@ -256,7 +265,7 @@ void fields(Writer& io, const TileImage& m) {
 void fields(Reader& io, TileImage& m) {
     std::uint8_t kind = 0;
     io.integer(m.sequence), io.integer(m.tile, std::uint32_t{0}, kMaxTiles - 1);
-    io.integer(kind, std::uint8_t{0}, std::uint8_t{1}), io.blob(m.bytes);
+    io.integer(kind, std::uint8_t{0}, std::uint8_t{2}), io.blob(m.bytes);
     m.kind = static_cast<ImageKind>(kind);
 }
 
@@ -264,10 +273,18 @@ void fields(auto& io, Is<Failure> auto& m) {
     io.text(m.reason);
 }
 
+void fields(auto& io, Is<ChangeSettings> auto& m) {
+    settingsFields(io, m.settings);
+}
+
+void fields(auto& io, Is<SettingsNow> auto& m) {
+    settingsFields(io, m.settings), io.text(m.refusal);
+}
+
 // A message's type on the wire is its place in the variant, from 1.
 constexpr std::size_t kTypes = std::variant_size_v<Message>;
 static_assert(std::is_same_v<std::variant_alternative_t<0, Message>, Hello>);
-static_assert(std::is_same_v<std::variant_alternative_t<kTypes - 1, Message>, Failure>);
+static_assert(std::is_same_v<std::variant_alternative_t<6, Message>, Failure>);
 
 template <std::size_t Index = 0>
 Message emptyMessage(std::size_t index) {
@@ -277,8 +294,9 @@ Message emptyMessage(std::size_t index) {
     return Message(std::in_place_index<Index>);
 }
 
-constexpr const char* kTypeNames[kTypes] = {"Hello",     "CameraRequest", "Welcome", "Control",
-                                            "FrameDone", "TileImage",     "Failure"};
+constexpr const char* kTypeNames[kTypes] = {"Hello",   "CameraRequest",  "Welcome",
+                                            "Control", "FrameDone",      "TileImage",
+                                            "Failure", "ChangeSettings", "SettingsNow"};
 
 }  // namespace
 

@@ -17,7 +17,7 @@
 // its limit before it allocates anything.
 namespace iwalk::protocol {
 
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 inline constexpr std::size_t kHeaderBytes = 8;
 inline constexpr std::uint32_t kMaxClientPayload = 1024;        // client to server
 inline constexpr std::uint32_t kMaxServerPayload = 512u << 20;  // server to client (an image of a large tile)
@@ -31,7 +31,9 @@ inline constexpr std::int32_t kMaxWallPx = 1 << 24;
 // `control` alone: false hands control over to the next in line, true asks for it again.
 struct Hello {
     std::uint32_t version = kVersion;
-    bool control = true;  // wants to steer; false: only watches
+    bool control = true;   // wants to steer; false: only watches
+    bool preview = false;  // wants small pictures of the wall
+    std::string token{};   // the secret that a server beyond the loopback asks for; else empty
 };
 
 enum FrameFlags : std::uint8_t {
@@ -69,9 +71,23 @@ struct Welcome {
     std::vector<NamedValue> settings;  // every run-time setting
 };
 
+// Client to server: other values for settings. Only the controller's count; all of them or, if one is wrong,
+// none.
+struct ChangeSettings {
+    std::vector<NamedValue> settings;
+};
+
+// Server to client: the settings from the next frame on, whenever they changed; and to a client whose
+// ChangeSettings was refused.
+struct SettingsNow {
+    std::vector<NamedValue> settings;  // all of them
+    std::string refusal;               // why nothing was changed; else empty
+};
+
 // Server to client: whether this client steers; sent after Welcome and whenever it changes.
 struct Control {
     bool granted = false;
+    std::uint32_t waiting = 0;  // clients that wait to take over
 };
 
 // What a tile did in a frame. Times in ms; bytes as read from disk.
@@ -88,6 +104,9 @@ struct TileStats {
     std::uint64_t fetchedBytes = 0, prefetchedBytes = 0, stalls = 0;
     std::uint64_t badPages = 0;  // pages left out of this frame because they could not be read
     std::uint64_t peakRssBytes = 0;
+    // Of the pixels that show a surface: how far a twentieth of them are at most, and half of them. Model
+    // units along the view; 0 where no surface is.
+    double nearDepth = 0, midDepth = 0;
 };
 
 // Server to client: a frame is on the wall.
@@ -96,14 +115,16 @@ struct FrameDone {
     std::uint64_t frame = 0;     // the server's own count
     double timeMs = 0;           // from the swap before to this one
     std::vector<TileStats> tiles;
+    Camera camera{};  // that the wall shows
 };
 
-enum class ImageKind : std::uint8_t { png = 0, exr = 1 };
+enum class ImageKind : std::uint8_t { png = 0, exr = 1, preview = 2 };
 
-// Server to client: a captured tile; comes after its FrameDone or before it.
+// Server to client: a captured tile; comes after its FrameDone or before it. A preview is a JPEG of any size,
+// to whoever wants them.
 struct TileImage {
-    std::uint64_t sequence = 0;
-    std::uint32_t tile = 0;  // index into Welcome::tiles
+    std::uint64_t sequence = 0;  // of a preview: the same for all tiles of a picture of the wall
+    std::uint32_t tile = 0;      // index into Welcome::tiles
     ImageKind kind = ImageKind::png;
     std::vector<std::byte> bytes;
 };
@@ -113,7 +134,9 @@ struct Failure {
     std::string reason;
 };
 
-using Message = std::variant<Hello, CameraRequest, Welcome, Control, FrameDone, TileImage, Failure>;
+// New types come at the end, and Hello keeps its version first: so other releases can still be told why not.
+using Message = std::variant<Hello, CameraRequest, Welcome, Control, FrameDone, TileImage, Failure,
+                             ChangeSettings, SettingsNow>;
 
 // Header and payload, ready to send. Strings are cut to kMaxStringBytes and what is no text in them becomes
 // '?'; numbers that no receiver takes (NaN, over a limit) are our own bug.

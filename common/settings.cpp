@@ -85,10 +85,12 @@ Result<void> parseBackground(Settings& settings, const std::string& text) {
     return {};
 }
 
+constexpr double kMaxNear = 1e15;
+
 Result<void> parseNear(Settings& settings, const std::string& text) {
     const auto distance = wholeNumber<double>(text);
-    if (!distance || !std::isfinite(*distance) || *distance < 0) {
-        return fail("not a distance of 0 or more in model units");
+    if (!distance || !(*distance >= 0 && *distance <= kMaxNear)) {
+        return fail("not a distance from 0 to {:.0e} in model units", kMaxNear);
     }
     settings.near = *distance;
     return {};
@@ -147,6 +149,35 @@ Result<void> parsePlpRays(Settings& settings, const std::string& text) {
     return {};
 }
 
+constexpr double kMaxPreviewFps = 60;
+
+Result<void> parsePreviewFps(Settings& settings, const std::string& text) {
+    const auto fps = wholeNumber<double>(text);
+    if (!fps || !(*fps >= 0 && *fps <= kMaxPreviewFps))
+        return fail("not a number from 0 to {}", kMaxPreviewFps);
+    settings.previewFps = *fps;
+    return {};
+}
+
+constexpr std::uint32_t kMinPreviewSize = 16, kMaxPreviewSize = 4096;
+
+Result<void> parsePreviewSize(Settings& settings, const std::string& text) {
+    const auto size = wholeNumber<std::uint32_t>(text);
+    if (!size || *size < kMinPreviewSize || *size > kMaxPreviewSize)
+        return fail("not a number of pixels from {} to {}", kMinPreviewSize, kMaxPreviewSize);
+    settings.previewSize = *size;
+    return {};
+}
+
+constexpr std::uint64_t kMinPreviewRate = 1u << 10;
+
+Result<void> parsePreviewRate(Settings& settings, const std::string& text) {
+    ASSIGN_OR_RETURN(const std::uint64_t bytes, parseBytes(text));
+    if (bytes < kMinPreviewRate) return fail("{} is less than 1k", text);
+    settings.previewRate = bytes;
+    return {};
+}
+
 constexpr std::array<const char*, 7> kShows{"none",     "ranges",   "levels",  "cache",
                                             "overdraw", "priority", "birdseye"};
 
@@ -165,19 +196,21 @@ struct Row {
     std::string (*print)(const Settings&);
 };
 
-constexpr std::size_t kRows = 12;
+constexpr std::size_t kRows = 15;
 const std::array<Row, kRows>& rows() {
     static const std::array<Row, kRows> table{{
         {{"cache", "BYTES",
           "memory of one server for pages, as in 512M or 2G, default 1G; more means fewer reads from disk, "
           "and "
-          "less memory for everything else on the machine"},
+          "less memory for everything else on the machine",
+          false},
          parseCache,
          [](const Settings& s) { return exactBytes(s.cacheBytes); }},
         {{"fetch-threads", "N",
           "threads of one server that read pages, 1 to 64, default 2; more hides a slow disk better and "
           "takes "
-          "processor time from drawing"},
+          "processor time from drawing",
+          false},
          parseFetchThreads,
          [](const Settings& s) { return fmt::format("{}", s.fetchThreads); }},
         {{"shading", "flat|smooth|auto",
@@ -237,6 +270,22 @@ const std::array<Row, kRows>& rows() {
           "boxes of pages in view: green drawn, red read for this frame, blue left out"},
          parseShow,
          [](const Settings& s) { return std::string(kShows[static_cast<std::size_t>(s.show)]); }},
+        {{"preview-fps", "FPS",
+          "small pictures of the wall that clients get in a second, 0 to 60, default 5; 0: none; more "
+          "follows "
+          "the flight better and takes time from drawing"},
+         parsePreviewFps,
+         [](const Settings& s) { return fmt::format("{}", s.previewFps); }},
+        {{"preview-size", "PX",
+          "longer side of these pictures stitched together, 16 to 4096, default 640; more is clearer and "
+          "larger"},
+         parsePreviewSize,
+         [](const Settings& s) { return fmt::format("{}", s.previewSize); }},
+        {{"preview-rate", "BYTES",
+          "bytes of them in a second for each client, 1k or more, default 1M; when that does not suffice "
+          "they come less often"},
+         parsePreviewRate,
+         [](const Settings& s) { return exactBytes(s.previewRate); }},
     }};
     return table;
 }
@@ -269,6 +318,22 @@ Result<void> setSetting(Settings& settings, const std::string& name, const std::
     if (!row) return fail("there is no setting '{}'; the settings are {}", name, allNames());
     const Result<void> parsed = row->parse(settings, text);
     if (!parsed) return fail("{} = '{}': {}", name, text, parsed.error().message);
+    return {};
+}
+
+Result<void> changeSetting(Settings& settings, const std::string& name, const std::string& text) {
+    Settings changed = settings;
+    RETURN_IF_ERROR(setSetting(changed, name, text));
+    if (!findRow(name)->info.live && changed != settings)
+        return fail("{} cannot change while the servers run: start them with --{} {}", name, name, text);
+    RETURN_IF_ERROR(checkSettings(changed));
+    settings = changed;
+    return {};
+}
+
+Result<void> checkSettings(const Settings& settings) {
+    if (settings.show == Show::priority && settings.mode != Mode::plp)
+        return fail("show = priority needs mode = plp: the other modes have no priorities");
     return {};
 }
 

@@ -32,6 +32,10 @@ struct Settings {
     std::uint64_t plpBudget = 280000;              // of Mode::plp: triangles of a tile
     double plpRays = 0.3;                          // percent of the tile's pixels
     Show show = Show::none;
+    double previewFps = 5;                 // 0: no previews
+    std::uint32_t previewSize = 640;       // px: the wall's longer side
+    std::uint64_t previewRate = 1u << 20;  // bytes a second to each client
+    bool operator==(const Settings&) const = default;
 };
 
 // One row of the table: how people write a setting.
@@ -39,11 +43,17 @@ struct SettingInfo {
     const char* name;  // as in --name and in TOML
     const char* form;  // what a value looks like, with its unit: "BYTES", "flat|smooth|auto"
     const char* help;  // one line: what it does, its default, what gets better and worse when it is raised
+    bool live = true;  // can be changed while the servers run; else only when they start
 };
 std::span<const SettingInfo> settingTable();
 
 // Parses `text` ("512M", "flat", "#203040") into the setting `name`; an error says what would be right.
 Result<void> setSetting(Settings& settings, const std::string& name, const std::string& text);
+// Whether the settings go together.
+Result<void> checkSettings(const Settings& settings);
+// As setSetting, while servers run: refuses a setting that is not live, unless it has this value already, and
+// what does not go together.
+Result<void> changeSetting(Settings& settings, const std::string& name, const std::string& text);
 // The value of the setting as setSetting takes it.
 std::string settingText(const Settings& settings, const std::string& name);
 

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "common/token.hpp"
 #include "common/version.hpp"
 #include "server/draw/gl_context.hpp"
 #include "server/frame/frame_loop.hpp"
@@ -139,8 +140,12 @@ Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& da
     RETURN_IF_ERROR(prepareOutput(rank, options, number));
     ASSIGN_OR_RETURN(rank.pipeline, TilePipeline::create(dataset, options.wall, number, options.settings));
     if (sync.rank() != 0) return {};
-    ASSIGN_OR_RETURN(rank.gateway,
-                     Gateway::listen(options.address, options.port, makeWelcome(options, dataset, hosts)));
+    std::string token;
+    if (!options.tokenFile.empty()) {
+        ASSIGN_OR_RETURN(token, readToken(options.tokenFile));
+    }
+    ASSIGN_OR_RETURN(rank.gateway, Gateway::listen(options.address, options.port,
+                                                   makeWelcome(options, dataset, hosts), token));
     return {};
 }
 
@@ -183,7 +188,7 @@ int serve(Sync& sync, ServerOptions& options) {
     if (sync.rank() == 0) announce(options, dataset, rank, *hosts, together.joined());
     runFrames({sync, *rank.pipeline, *rank.output, rank.gateway.get(),
                options.wall.tiles[static_cast<std::size_t>(sync.rank())].name, options.outputDirectory,
-               sync.rank() == 0 ? options.resumeFile : "", nearPlane(options.settings, dataset.manifest),
+               sync.rank() == 0 ? options.resumeFile : "", dataset, options.wall, options.settings,
                stopRequested});
     return EXIT_SUCCESS;
 }

@@ -45,6 +45,10 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
         ->type_name("FILE");
     app.add_option("--listen", listen, "where rank 0 waits for clients; port 0 takes any free one")
         ->type_name("ADDR:PORT");
+    app.add_option("--token-file", options.tokenFile,
+                   "file with a secret that clients must have, too; needed where others than this machine "
+                   "can reach the address")
+        ->type_name("FILE");
     app.add_option(
            "--present", present,
            "where finished tiles go: none (clients may still capture), file (PNG), or window: on X displays, "

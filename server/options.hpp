@@ -17,6 +17,7 @@ struct ServerOptions {
     std::string dataset, wallFile;
     std::string address = "127.0.0.1";  // to listen at (rank 0)
     std::uint16_t port = 0;             // 0: any free one
+    std::string tokenFile;              // of the secret that clients must bring; empty: none
     std::string outputDirectory;        // of --present file; empty: tiles are not written
     std::string resumeFile;             // empty: none
     bool window = false;                // --present window

@@ -15,6 +15,8 @@
 #include "server/draw/arena_banks.hpp"
 #include "server/draw/gl_objects.hpp"
 #include "server/draw/shaders.hpp"
+#include "server/draw/shading_variant.hpp"
+#include "server/draw/thumbnail.hpp"
 #include "server/draw/visibility_buffer.hpp"
 
 namespace iwalk {
@@ -29,6 +31,7 @@ class GlRenderer : public Renderer {
         : width_(tile.width), height_(tile.height), tile_(tile), look_(look) {}
     ~GlRenderer() override;
     Result<void> prepare();
+    Result<void> setLook(const SceneLook& look) override;
 
     Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override {
         return makeArenaBanks(bytes, kArenaAlignment, banks_);
@@ -46,6 +49,12 @@ class GlRenderer : public Renderer {
     glm::ivec2 bindBlock() override;
     ColorImage readColor() override;
     std::uint32_t colorTexture() const override { return color_; }
+    ColorImage readSmall(int width, int height) override {
+        return thumbnail_.read(framebuffer_, width_, height_, width, height);
+    }
+    void sampleBlockDepths(std::vector<float>& depths) override {
+        visible_.sampleDepths(inFramebuffer(), depths);
+    }
     DepthImage readDepth() override;
 
   private:
@@ -63,14 +72,14 @@ class GlRenderer : public Renderer {
     void useView(int x, int y) const;
     void bindPicture(GLuint framebuffer);
     void shade();
-    std::uint32_t shadingVariant() const;
     void useShadingProgram();
 
     const int width_, height_;  // px
     const PixelRect tile_;
-    const SceneLook look_;
+    SceneLook look_;
     VisibilityBuffer visible_;
     Lines lines_;
+    Thumbnail thumbnail_;
     GLuint framebuffer_ = 0, color_ = 0;
     GLuint captureFramebuffer_ = 0, eyeDepth_ = 0;  // with the same colour; made when depth is first wanted
     GLuint shaded_ = 0;                             // one of the two
@@ -109,10 +118,8 @@ Result<void> GlRenderer::prepare() {
             width_, height_, largest);
     RETURN_IF_ERROR(makeFramebuffers());
     RETURN_IF_ERROR(lines_.prepare());
-    for (const bool wide : {false, true}) {
-        ASSIGN_OR_RETURN(visibilityPrograms_[wide], compileVisibilityProgram(wide, look_.overdraw));
-        vertexArrays_[wide] = makeVertexArray(wide ? 3 : 2);
-    }
+    RETURN_IF_ERROR(compileVisibilityPrograms(visibilityPrograms_, look_.overdraw));
+    for (const bool wide : {false, true}) vertexArrays_[wide] = makeVertexArray(wide ? 3 : 2);
     glCreateVertexArrays(1, &emptyArray_);
     glCreateBuffers(1, &pagesBuffer_);
     glCreateBuffers(1, &tintsBuffer_);
@@ -123,13 +130,22 @@ Result<void> GlRenderer::prepare() {
     return {};
 }
 
+Result<void> GlRenderer::setLook(const SceneLook& look) {
+    const bool counts = look.overdraw != look_.overdraw;
+    look_ = look;
+    if (!counts) return {};
+    visible_.setCounts(look_.overdraw);
+    return compileVisibilityPrograms(visibilityPrograms_, look_.overdraw);
+}
+
 Result<void> GlRenderer::makeFramebuffers() {
     int blockWidth = 0, blockHeight = 0;
     for (const Block& block : blocksOf(tile_)) {
         blockWidth = std::max(blockWidth, block.part.x + block.part.width - block.x);
         blockHeight = std::max(blockHeight, block.part.y + block.part.height - block.y);
     }
-    RETURN_IF_ERROR(visible_.prepare(blockWidth, blockHeight, look_.overdraw));
+    RETURN_IF_ERROR(visible_.prepare(blockWidth, blockHeight));
+    visible_.setCounts(look_.overdraw);
     color_ = makeTexture(GL_RGBA8, width_, height_);
     glCreateFramebuffers(1, &framebuffer_);
     glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, color_, 0);
@@ -339,21 +355,8 @@ void GlRenderer::drawLines(std::span<const Line> lines) {
     used_ = 0;
 }
 
-std::uint32_t GlRenderer::shadingVariant() const {
-    std::uint32_t variant = 0;
-    if (view_.captureDepth) variant |= kShadeDepth;
-    if (visible_.hasRest()) variant |= kShadeRest;
-    if (look_.normals && look_.shading != Shading::flat) variant |= kShadeSmooth;
-    if (look_.tints) return variant | kShadeTint;
-    if (look_.overdraw) return variant | kShadeOverdraw;
-    if (look_.ramp == Ramp::height || (look_.ramp == Ramp::automatic && !look_.colors))
-        return variant | kShadeRamp;
-    if (look_.colors) variant |= kShadeColors;
-    return variant;
-}
-
 void GlRenderer::useShadingProgram() {
-    const std::uint32_t variant = shadingVariant();
+    const std::uint32_t variant = shadingVariant(look_, view_.captureDepth, visible_.hasRest());
     if (shadingPrograms_[variant] == 0) {
         Result<std::uint32_t> program = compileShadingProgram(variant);
         if (!program) detail::checkFailed(__FILE__, __LINE__, program.error().message);

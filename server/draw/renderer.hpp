@@ -18,7 +18,7 @@
 
 namespace iwalk {
 
-// What a renderer needs to know of a dataset and stays the same from frame to frame.
+// What a renderer needs to know of a dataset and how it is to look.
 struct SceneLook {
     int stepExponent = 0;                  // one lattice step is 2^stepExponent model units
     LatticeBox bounds;                     // of the content, for the ramp
@@ -48,6 +48,9 @@ class Renderer {
     // `tile`: px of the screen; every view's must be the same.
     static Result<std::unique_ptr<Renderer>> create(const PixelRect& tile, const SceneLook& look);
     virtual ~Renderer() = default;
+
+    // Between frames: another look of the same dataset.
+    virtual Result<void> setLook(const SceneLook& look) = 0;
 
     // Memory for `bytes` of pages (rounded up to kArenaAlignment), mapped until the renderer goes. What fetch
     // threads write there the GPU reads in place.
@@ -83,6 +86,10 @@ class Renderer {
 
     virtual ColorImage readColor() = 0;
     virtual std::uint32_t colorTexture() const = 0;  // GL's, RGBA8, row 0 on top
+    // The frame's colours at this size, or its own where that is less.
+    virtual ColorImage readSmall(int width, int height) = 0;
+    // Appends the window depths of the block's pixels, of a row here and there.
+    virtual void sampleBlockDepths(std::vector<float>& depths) = 0;
     // Eye-space depth in model units, 0 where there is no surface; of a frame with captureDepth.
     virtual DepthImage readDepth() = 0;
 };

@@ -326,8 +326,13 @@ Result<std::uint32_t> compile(const std::string& defines, const char* vertexSour
 
 }  // namespace
 
-Result<std::uint32_t> compileVisibilityProgram(bool wide, bool counts) {
-    return compile(define("WIDE", wide) + define("COUNTS", counts), kVertex, kVisibilityFragment);
+Result<void> compileVisibilityPrograms(std::array<std::uint32_t, 2>& programs, bool counts) {
+    for (const bool wide : {false, true}) {
+        const std::string defines = define("WIDE", wide) + define("COUNTS", counts);
+        glDeleteProgram(programs[wide]);
+        ASSIGN_OR_RETURN(programs[wide], compile(defines, kVertex, kVisibilityFragment));
+    }
+    return {};
 }
 
 Result<std::uint32_t> compileRestProgram() {

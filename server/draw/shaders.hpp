@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "common/result.hpp"
@@ -55,7 +56,8 @@ enum ImageBinding : std::uint32_t { kCountsBinding = 0 };  // how many triangles
 
 // Compile and link; the error holds the GL's log. The first pass comes for narrow and for wide pages, and may
 // count triangles on the way.
-Result<std::uint32_t> compileVisibilityProgram(bool wide, bool counts);
+// `programs` are replaced.
+Result<void> compileVisibilityPrograms(std::array<std::uint32_t, 2>& programs, bool counts);
 Result<std::uint32_t> compileRestProgram();  // begins the visibility buffer's second layer
 Result<std::uint32_t> compileBoxProgram();   // a rectangle at one depth, no colour
 Result<std::uint32_t> compileLineProgram();  // attributes: a place from the eye, a colour

@@ -2,6 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+
 #include "server/draw/gl_objects.hpp"
 #include "server/draw/shaders.hpp"
 
@@ -10,6 +12,7 @@ namespace {
 
 constexpr GLuint kNobody[] = {0, 0, 0, 0};
 constexpr GLfloat kInfinitelyFar[] = {0};
+constexpr int kSampledRows = 8;
 
 std::size_t pixelsOf(const PixelRect& part) {
     return static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
@@ -28,15 +31,20 @@ VisibilityBuffer::~VisibilityBuffer() {
     glDeleteVertexArrays(1, &emptyArray_);
 }
 
-Result<void> VisibilityBuffer::prepare(int width, int height, bool counts) {
+Result<void> VisibilityBuffer::prepare(int width, int height) {
+    width_ = width, height_ = height;
     for (Layer& layer : layers_) RETURN_IF_ERROR(prepare(layer, width, height));
     ASSIGN_OR_RETURN(restProgram_, compileRestProgram());
     glCreateVertexArrays(1, &emptyArray_);
-    if (counts) {
-        counts_ = makeTexture(GL_R32UI, width, height);
-        glBindImageTexture(kCountsBinding, counts_, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
-    }
     return {};
+}
+
+void VisibilityBuffer::setCounts(bool counts) {
+    glDeleteTextures(1, &counts_);
+    counts_ = 0;
+    if (!counts) return;
+    counts_ = makeTexture(GL_R32UI, width_, height_);
+    glBindImageTexture(kCountsBinding, counts_, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
 }
 
 Result<void> VisibilityBuffer::prepare(Layer& layer, int width, int height) {
@@ -89,6 +97,17 @@ void VisibilityBuffer::readDepths(const PixelRect& part, std::vector<float>& dep
     depths.resize(pixelsOf(part));
     glBindFramebuffer(GL_READ_FRAMEBUFFER, layers_[rest_].framebuffer);
     glReadPixels(part.x, part.y, part.width, part.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+}
+
+void VisibilityBuffer::sampleDepths(const PixelRect& part, std::vector<float>& depths) const {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, layers_[rest_].framebuffer);
+    const int rows = std::min(kSampledRows, part.height);
+    for (int i = 0; i < rows; ++i) {
+        const std::size_t before = depths.size();
+        depths.resize(before + static_cast<std::size_t>(part.width));
+        glReadPixels(part.x, part.y + (2 * i + 1) * part.height / (2 * rows), part.width, 1,
+                     GL_DEPTH_COMPONENT, GL_FLOAT, depths.data() + before);
+    }
 }
 
 void VisibilityBuffer::readNumbers(const PixelRect& part, std::vector<std::uint32_t>& numbers) const {

@@ -20,9 +20,10 @@ class VisibilityBuffer {
     VisibilityBuffer(const VisibilityBuffer&) = delete;
     VisibilityBuffer& operator=(const VisibilityBuffer&) = delete;
 
-    // px: the largest block. With `counts`, programs may count in an image of 32-bit integers
-    // (kCountsBinding).
-    Result<void> prepare(int width, int height, bool counts);
+    // px: the largest block.
+    Result<void> prepare(int width, int height);
+    // Whether programs may count in an image of 32-bit integers (kCountsBinding).
+    void setCounts(bool counts);
 
     void clear();          // nothing drawn; one layer
     void beginRest();      // goes on in the second layer; wants the block's viewport and the depth test
@@ -34,6 +35,8 @@ class VisibilityBuffer {
 
     // The pixels of a part of the block, row by row, as drawn so far.
     void readDepths(const PixelRect& part, std::vector<float>& depths) const;
+    // Appends the depths of some of these rows.
+    void sampleDepths(const PixelRect& part, std::vector<float>& depths) const;
     // The second layer's number where it has one, even where equal depths say otherwise.
     void readNumbers(const PixelRect& part, std::vector<std::uint32_t>& numbers) const;
 
@@ -44,6 +47,7 @@ class VisibilityBuffer {
     Result<void> prepare(Layer& layer, int width, int height);
 
     Layer layers_[2];
+    int width_ = 0, height_ = 0;                                   // px
     std::uint32_t restProgram_ = 0, emptyArray_ = 0, counts_ = 0;  // GL names; 0: no counts
     bool rest_ = false;
 };

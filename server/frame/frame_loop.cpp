@@ -1,10 +1,15 @@
 #include "server/frame/frame_loop.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <thread>
 
+#include "common/jpeg.hpp"
 #include "server/frame/last_camera.hpp"
+#include "server/gateway/preview_pace.hpp"
 #include "server/present/tile_writer.hpp"
 
 namespace iwalk {
@@ -22,12 +27,19 @@ class FrameLoop {
 
     void run() {
         for (FrameState state = nextState(); state.command != FrameState::quit; state = nextState())
-            drawFrame(state);
+            if (state.command == FrameState::draw)
+                drawFrame(state);
+            else
+                sendPreview();
     }
 
   private:
     FrameState nextState();
     FrameState waitForRequest();
+    FrameState stateOf(const protocol::CameraRequest& request);
+    bool previewDue();
+    void sendPreview();
+    void takePicture(protocol::TileImage picture);
     std::optional<protocol::CameraRequest> nextRequest();
     void drawFrame(const FrameState& state);
     void present(const FrameState& state);
@@ -41,7 +53,24 @@ class FrameLoop {
     std::optional<Camera> resumed_;  // to be drawn before a client asks for anything
     std::uint64_t frame_ = 0;
     std::optional<Clock::time_point> lastSwap_;
+    Settings settings_ = parts_.settings, next_ = settings_;  // drawn with, and (rank 0) from now on
+    std::optional<protocol::CameraRequest> last_;  // rank 0: what the wall shows, as if nobody had asked
+    bool again_ = false;                           // rank 0: settings have changed since
+    std::uint64_t joined_ = 0;                     // rank 0: as in Gateway::PreviewWish
+    std::uint64_t preview_ = 0;                    // counts them, the same on all ranks
+    PreviewPace previews_;                         // rank 0
 };
+
+// Px of a preview for each px of the wall. Where screens stand freely, as if their tiles made a square.
+double previewScale(const Wall& wall, std::uint32_t size) {
+    int longest = std::max(wall.width, wall.height);
+    if (longest == 0) {
+        for (const Tile& tile : wall.tiles)
+            longest = std::max({longest, tile.onWall.width, tile.onWall.height});
+        longest = static_cast<int>(longest * std::ceil(std::sqrt(static_cast<double>(wall.tiles.size()))));
+    }
+    return std::min(1.0, size / static_cast<double>(longest));
+}
 
 FrameState FrameLoop::nextState() {
     FrameState state;
@@ -50,12 +79,23 @@ FrameState FrameLoop::nextState() {
     return state;
 }
 
+// A client's camera, or the last one again when settings have changed.
 std::optional<protocol::CameraRequest> FrameLoop::nextRequest() {
+    lastCamera_.keep(Clock::now());
     std::optional<protocol::CameraRequest> request = parts_.gateway->nextRequest();
     if (!request && resumed_) request = protocol::CameraRequest{0, 0, *resumed_};
     resumed_.reset();
-    if (request) lastCamera_.shows(request->camera, Clock::now());
-    lastCamera_.keep(Clock::now());
+    if (const std::optional<Settings> changed = parts_.gateway->newSettings()) {
+        next_ = *changed;
+        again_ = true;
+    }
+    if (!request && again_) request = last_;
+    if (!request) return request;
+    lastCamera_.shows(request->camera, Clock::now());
+    again_ = false;
+    last_ = request;
+    last_->sequence = 0;
+    last_->flags = 0;
     return request;
 }
 
@@ -67,6 +107,10 @@ FrameState FrameLoop::waitForRequest() {
     const auto stop = [this] { return parts_.stop || parts_.sync.askedToStop(); };
     while (!stop() && !(request = nextRequest())) {
         idle();
+        if (last_ && previewDue()) {
+            state.command = FrameState::preview;
+            return state;
+        }
         std::this_thread::sleep_for(std::chrono::microseconds(pauseUs));
         pauseUs = std::min(1000, pauseUs * 2);
     }
@@ -74,21 +118,33 @@ FrameState FrameLoop::waitForRequest() {
         state.command = FrameState::quit;
         return state;
     }
+    return stateOf(*request);
+}
+
+FrameState FrameLoop::stateOf(const protocol::CameraRequest& request) {
+    FrameState state;
     const auto copy = [](const glm::dvec3& from, double(&to)[3]) {
         to[0] = from.x, to[1] = from.y, to[2] = from.z;
     };
-    state.flags = request->flags;
+    previews_.somethingNew();
+    state.flags = request.flags | (previewDue() ? FrameState::kPreview : 0);
     state.frame = frame_;
-    state.sequence = request->sequence;
-    copy(request->camera.eye, state.eye);
-    copy(request->camera.target, state.target);
-    copy(request->camera.up, state.up);
-    state.fovY = request->camera.fovY;
-    state.near = parts_.near;
+    state.sequence = request.sequence;
+    copy(request.camera.eye, state.eye);
+    copy(request.camera.target, state.target);
+    copy(request.camera.up, state.up);
+    state.fovY = request.camera.fovY;
+    state.near = nearPlane(next_, parts_.dataset.manifest);
+    state.settings = next_;
     return state;
 }
 
 void FrameLoop::drawFrame(const FrameState& state) {
+    if (state.settings != settings_) {
+        const Result<void> applied = parts_.pipeline.apply(state.settings);
+        if (!applied) detail::checkFailed(__FILE__, __LINE__, applied.error().message);
+        settings_ = state.settings;
+    }
     protocol::TileStats stats = parts_.pipeline.draw(state);
     parts_.output.prepare(parts_.pipeline.renderer().colorTexture());
     stats.barrierWaitMs = parts_.sync.barrier();
@@ -96,6 +152,7 @@ void FrameLoop::drawFrame(const FrameState& state) {
     const Clock::time_point swap = Clock::now();
     present(state);
     report(state, stats, swap);
+    if (state.flags & FrameState::kPreview) sendPreview();
     ++frame_;
 }
 
@@ -126,6 +183,7 @@ void FrameLoop::report(const FrameState& state, protocol::TileStats stats, Clock
         done.frame = state.frame;
         done.timeMs = std::chrono::duration<double, std::milli>(swap - lastSwap_.value_or(swap)).count();
         done.tiles = std::move(all);
+        done.camera = last_->camera;
         parts_.gateway->frameDone(std::move(done));
     }
     lastSwap_ = swap;
@@ -141,8 +199,42 @@ void FrameLoop::idle() {
 // Captures go from this rank's writer to rank 0, and from there through the gateway.
 void FrameLoop::passCapturesOn() {
     for (protocol::TileImage& tile : writer_.encoded()) parts_.sync.sendToRank0(std::move(tile));
-    for (protocol::TileImage& tile : parts_.sync.poll())
-        if (parts_.gateway) parts_.gateway->tileImage(std::move(tile));
+    for (protocol::TileImage& tile : parts_.sync.poll()) takePicture(std::move(tile));
+}
+
+void FrameLoop::takePicture(protocol::TileImage picture) {
+    if (!parts_.gateway) return;
+    if (picture.kind == protocol::ImageKind::preview)
+        previews_.arrived(picture.bytes.size(), next_.previewFps, next_.previewRate);
+    // An empty one stands for a tile that has none.
+    if (!picture.bytes.empty()) parts_.gateway->tileImage(std::move(picture));
+}
+
+// Begins them when they are: all ranks will be told.
+bool FrameLoop::previewDue() {
+    const Gateway::PreviewWish wish = parts_.gateway->previewWish();
+    if (wish.joined != joined_) previews_.somethingNew();
+    joined_ = wish.joined;
+    const auto now = Clock::now();
+    if (!wish.wanted || !previews_.due(now, next_.previewFps)) return false;
+    previews_.begin(now, static_cast<std::size_t>(parts_.sync.size()));
+    return true;
+}
+
+// Read back small and compressed here: it takes less time than handing the large one to another thread.
+void FrameLoop::sendPreview() {
+    const Tile& tile = parts_.wall.tiles[static_cast<std::size_t>(parts_.sync.rank())];
+    const double scale = previewScale(parts_.wall, settings_.previewSize);
+    const auto pixels = [&](int length) {
+        return std::max(1, static_cast<int>(std::lround(scale * length)));
+    };
+    const ColorImage small =
+        parts_.pipeline.renderer().readSmall(pixels(tile.onWall.width), pixels(tile.onWall.height));
+    Result<std::vector<std::byte>> bytes = encodeJpeg(small);
+    if (!bytes) spdlog::error("no preview: {}", bytes.error().message);
+    parts_.sync.sendToRank0({preview_++, static_cast<std::uint32_t>(parts_.sync.rank()),
+                             protocol::ImageKind::preview,
+                             bytes ? std::move(*bytes) : std::vector<std::byte>()});
 }
 
 }  // namespace

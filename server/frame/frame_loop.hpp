@@ -19,7 +19,9 @@ struct FrameLoopParts {
     std::string tileName;
     std::string outputDirectory;  // --present file: where tiles are written; empty: nowhere
     std::string resumeFile;       // rank 0 begins with its camera, and keeps the last one there; empty: none
-    double near = 0;              // model units
+    const Dataset& dataset;
+    const Wall& wall;
+    Settings settings;              // to begin with
     const std::atomic<bool>& stop;  // rank 0 ends the wall when it is set
 };
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <functional>
+#include <vector>
 
 #include "common/protocol.hpp"
 #include "server/cache/page_cache.hpp"
@@ -20,6 +23,21 @@ class Stopwatch {
   private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+// From window depths of some pixels: near plane (model units) / distance, 0 where there is no surface. Orders
+// `depths` anew.
+inline void addDepths(std::vector<float>& depths, double near, protocol::TileStats& stats) {
+    std::erase(depths, 0.0f);
+    if (depths.empty()) return;
+    const auto farthestOf = [&](double share) {
+        const auto place =
+            depths.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(depths.size()));
+        std::nth_element(depths.begin(), place, depths.end(), std::greater());
+        return near / static_cast<double>(*place);
+    };
+    stats.nearDepth = farthestOf(0.05);
+    stats.midDepth = farthestOf(0.5);
+}
 
 inline void addCounters(const PageCache::Counters& counters, protocol::TileStats& stats) {
     stats.fetchWaitMs += counters.waitMs;

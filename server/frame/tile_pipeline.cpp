@@ -66,9 +66,8 @@ Result<Dataset> openDataset(const std::string& path) {
 Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& dataset, const Wall& wall,
                                                            std::size_t tile, const Settings& settings,
                                                            double costOfLooking) {
-    if (settings.show == Show::priority && settings.mode != Mode::plp)
-        return fail("--show priority needs --mode plp: the other modes have no priorities");
-    std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile, settings.level));
+    RETURN_IF_ERROR(checkSettings(settings));
+    std::unique_ptr<TilePipeline> pipeline(new TilePipeline(dataset, wall, tile, costOfLooking));
     const PixelRect& rect = wall.tiles[tile].onScreen;
     ASSIGN_OR_RETURN(pipeline->renderer_, Renderer::create(rect, lookOf(dataset, settings)));
     ASSIGN_OR_RETURN(const std::uint64_t bytes, arenaBytes(dataset.hierarchy, settings.cacheBytes));
@@ -78,17 +77,7 @@ Result<std::unique_ptr<TilePipeline>> TilePipeline::create(const Dataset& datase
                                                    Arena(std::move(memory), Renderer::kArenaAlignment),
                                                    settings.fetchThreads);
     pipeline->pages_.emplace(dataset.hierarchy, *pipeline->cache_, *pipeline->renderer_);
-    if (settings.mode == Mode::plp)
-        pipeline->plp_.emplace(dataset.hierarchy, pipeline->visibility_, settings);
-    if (settings.mode == Mode::cplp) {
-        ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion,
-                         makeOcclusion(settings.occlusion, *pipeline->renderer_));
-        pipeline->conservative_.emplace(pipeline->visibility_, *pipeline->cache_, *pipeline->renderer_,
-                                        *pipeline->pages_, std::move(occlusion), costOfLooking);
-    }
-    if (settings.show == Show::birdseye)
-        pipeline->birdsEye_.emplace(dataset.hierarchy, pipeline->visibility_, *pipeline->cache_,
-                                    *pipeline->renderer_, *pipeline->pages_);
+    RETURN_IF_ERROR(pipeline->apply(settings));
     return pipeline;
 }
 
@@ -114,12 +103,15 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
 
     const TileView view = viewOf(state);
     renderer_->beginFrame(view);
+    depths_.clear();
     if (plp_) plp_->choose(cut_, {view.projection, view.tile, view.eye, view.near}, *cache_, stats);
     std::vector<PageDrawing::Drawn> drawn;
     pages_->noteInto(birdsEye_ ? &drawn : nullptr);
     for (const Block& block : blocksOf(view.tile)) drawBlock(BlockView(view, block), stats);
     pages_->noteInto(nullptr);
     if (birdsEye_) birdsEye_->draw(view, cameraOf(state).up, cut_, drawn);
+
+    addDepths(depths_, state.near, stats);
 
     stats.visibilityMs += stats.pyramidMs + stats.testMs;
     stats.drawMs = watch.lap() - stats.visibilityMs - stats.fetchWaitMs;
@@ -141,6 +133,7 @@ void TilePipeline::drawBlock(const BlockView& view, protocol::TileStats& stats) 
         pages_->drawAll(view, visible, stats);
         renderer_->finish();
     }
+    renderer_->sampleBlockDepths(depths_);
     cache_->release();
 
     addCounters(cache_->counters(), stats);
@@ -149,6 +142,21 @@ void TilePipeline::drawBlock(const BlockView& view, protocol::TileStats& stats) 
 double nearPlane(const Settings& settings, const Manifest& manifest) {
     if (settings.near > 0) return settings.near;
     return 1e-5 * glm::distance(manifest.bounds.min, manifest.bounds.max);
+}
+
+Result<void> TilePipeline::apply(const Settings& settings) {
+    RETURN_IF_ERROR(renderer_->setLook(lookOf(dataset_, settings)));
+    cut_ = cutAtLevel(dataset_.hierarchy, settings.level);
+    plp_.reset();
+    conservative_.reset();
+    birdsEye_.reset();
+    if (settings.show == Show::birdseye)
+        birdsEye_.emplace(dataset_.hierarchy, visibility_, *cache_, *renderer_, *pages_);
+    if (settings.mode == Mode::plp) plp_.emplace(dataset_.hierarchy, visibility_, settings);
+    if (settings.mode != Mode::cplp) return {};
+    ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion, makeOcclusion(settings.occlusion, *renderer_));
+    conservative_.emplace(visibility_, *cache_, *renderer_, *pages_, std::move(occlusion), costOfLooking_);
+    return {};
 }
 
 }  // namespace iwalk

@@ -37,14 +37,17 @@ class TilePipeline {
     // Draws the frame completely, however long the pages take, into the renderer's framebuffer.
     protocol::TileStats draw(const FrameState& state);
 
+    // The next frame is drawn with these; what is not live stays as it was.
+    Result<void> apply(const Settings& settings);
+
     Renderer& renderer() { return *renderer_; }
 
   private:
-    TilePipeline(const Dataset& dataset, const Wall& wall, std::size_t tile, std::uint8_t level)
+    TilePipeline(const Dataset& dataset, const Wall& wall, std::size_t tile, double costOfLooking)
         : dataset_(dataset),
           wall_(wall),
           tile_(tile),
-          cut_(cutAtLevel(dataset.hierarchy, level)),
+          costOfLooking_(costOfLooking),
           visibility_(dataset.hierarchy) {}
 
     TileView viewOf(const FrameState& state) const;
@@ -53,9 +56,11 @@ class TilePipeline {
     const Dataset& dataset_;
     const Wall& wall_;
     const std::size_t tile_;
-    const Cut cut_;
+    const double costOfLooking_;
+    Cut cut_;
     const FrustumVisibility visibility_;
     std::optional<PlpFrame> plp_;  // in mode plp
+    std::vector<float> depths_;    // some of the frame's, window depths
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<PageCache> cache_;  // after the renderer, whose memory it uses
     std::optional<PageDrawing> pages_;

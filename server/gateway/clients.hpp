@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ namespace iwalk {
 class Clients : public Connection::Owner {
   public:
     // `requests` outlives this.
-    Clients(Requests& requests, const protocol::Welcome& welcome, const Gateway::Limits& limits);
+    Clients(Requests& requests, const protocol::Welcome& welcome, const Gateway::Limits& limits,
+            const std::string& token);
 
     // A new connection, welcome or one too many.
     void add(boost::asio::ip::tcp::socket socket);
@@ -29,6 +31,8 @@ class Clients : public Connection::Owner {
     void sendFrame(protocol::FrameDone frame, const SenderPtr& sender, std::uint64_t sequence);
     // `counted`: what of it is in the sender's unsentBytes already.
     void sendImage(const protocol::TileImage& image, const SenderPtr& sender, std::uint64_t counted);
+    // To all that want previews and keep up.
+    void sendPreview(const protocol::TileImage& image);
     void sayGoodbye(const std::string& reason);
     // Sockets that are not closed yet.
     std::size_t sockets() const { return static_cast<std::size_t>(slots_.use_count() - 1); }
@@ -37,25 +41,32 @@ class Clients : public Connection::Owner {
     struct Client {
         std::shared_ptr<Connection> connection;
         bool greeted = false;
+        bool preview = false;  // wants small pictures
     };
 
     bool received(Connection& connection, const protocol::Message& message) override;
     void ended(Connection& connection, const std::string& reason, bool fault) override;
 
     Client* find(const Sender& sender);
-    void greet(Client& client, bool wantsControl);
+    void greet(Client& client, const protocol::Hello& hello);
+    void wishPreview(Client& client, bool wanted);
     void wishControl(const SenderPtr& sender, bool wanted);
     void leaveLine(const SenderPtr& sender);
-    void tellControl(const Sender& sender, bool granted);
+    void tellControl(const Sender& sender);
+    void sendToAll(const protocol::Message& message);
+    void changeSettings(Connection& connection, const protocol::ChangeSettings& changes);
     bool controls(const Sender& sender) const { return !line_.empty() && line_.front().get() == &sender; }
 
     Requests& requests_;
     const Gateway::Limits limits_;
-    const Connection::Buffer welcome_;  // encoded once
-    std::vector<Client> clients_;       // open connections
-    std::deque<SenderPtr> line_;        // who wants control, longest waiting first; the first has it
-    std::shared_ptr<void> slots_;       // one more owner for every socket that is not closed yet
-    std::uint64_t lastId_ = 0;
+    const std::string token_;  // empty: none is asked for
+    protocol::Welcome welcome_;
+    Settings settings_;                             // as welcome_ says them
+    std::vector<Client> clients_;                   // open connections
+    std::optional<protocol::FrameDone> lastFrame_;  // on the wall, as nobody's
+    std::deque<SenderPtr> line_;                 // who wants control, longest waiting first; the first has it
+    std::shared_ptr<void> slots_;                // one more owner for every socket that is not closed yet
+    std::uint64_t lastId_ = 0, controller_ = 0;  // controller_: that was said to be it last
 };
 
 }  // namespace iwalk

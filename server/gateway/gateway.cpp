@@ -24,8 +24,10 @@ constexpr int kGoodbyeLooks = 50;
 
 class SocketGateway : public Gateway {
   public:
-    SocketGateway(const protocol::Welcome& welcome, const Limits& limits)
-        : requests_({limits.queuedRequests, limits.unsentBytes / 4}), clients_(requests_, welcome, limits) {}
+    SocketGateway(const protocol::Welcome& welcome, const Limits& limits, const std::string& token)
+        : requests_({limits.queuedRequests, limits.unsentBytes / 4}),
+          clients_(requests_, welcome, limits, token),
+          open_(token.empty()) {}
 
     ~SocketGateway() override {
         if (!thread_.joinable()) return;
@@ -49,6 +51,8 @@ class SocketGateway : public Gateway {
         return taken->request;
     }
 
+    std::optional<Settings> newSettings() override { return requests_.takeSettings(); }
+
     void frameDone(protocol::FrameDone frame) override {
         const auto origin = requests_.origin(frame.sequence).value_or(Requests::Origin{});
         asio::post(io_, [this, frame = std::move(frame), origin]() mutable {
@@ -56,7 +60,15 @@ class SocketGateway : public Gateway {
         });
     }
 
+    PreviewWish previewWish() const override {
+        return {requests_.previewClients > 0, requests_.previewsJoined};
+    }
+
     void tileImage(protocol::TileImage image) override {
+        if (image.kind == protocol::ImageKind::preview) {
+            asio::post(io_, [this, image = std::move(image)] { clients_.sendPreview(image); });
+            return;
+        }
         const auto origin = requests_.origin(image.sequence);
         if (!origin || origin->sender->gone) return;
         image.sequence = origin->sequence;
@@ -81,6 +93,7 @@ class SocketGateway : public Gateway {
     Clients clients_;  // after io_, without which sockets cannot be closed
     tcp::acceptor acceptor_{io_};
     asio::steady_timer retry_{io_};
+    const bool open_;            // to everybody who can reach it
     bool acceptFailed_ = false;  // said so already
     std::uint16_t port_ = 0;
     std::thread thread_;
@@ -93,6 +106,8 @@ Result<void> SocketGateway::open(const std::string& address, std::uint16_t port)
     const auto found = resolver.resolve(address, std::to_string(port), tcp::resolver::passive, error);
     if (error || found.empty()) return fail("cannot listen on {}: there is no such address here", place);
 
+    if (open_ && !found.begin()->endpoint().address().is_loopback())
+        return fail("cannot listen on {}: others can reach it: give --token-file FILE", place);
     const Result<void> bound = bind(found.begin()->endpoint());
     if (!bound) return fail("cannot listen on {}: {}", place, bound.error().message);
     port_ = acceptor_.local_endpoint(error).port();
@@ -161,14 +176,15 @@ void SocketGateway::run() {
 }  // namespace
 
 Result<std::unique_ptr<Gateway>> Gateway::listen(const std::string& address, std::uint16_t port,
-                                                 const protocol::Welcome& welcome) {
-    return listen(address, port, welcome, Limits{});
+                                                 const protocol::Welcome& welcome, const std::string& token) {
+    return listen(address, port, welcome, Limits{}, token);
 }
 
 Result<std::unique_ptr<Gateway>> Gateway::listen(const std::string& address, std::uint16_t port,
-                                                 const protocol::Welcome& welcome, const Limits& limits) {
+                                                 const protocol::Welcome& welcome, const Limits& limits,
+                                                 const std::string& token) {
     try {
-        auto gateway = std::make_unique<SocketGateway>(welcome, limits);
+        auto gateway = std::make_unique<SocketGateway>(welcome, limits, token);
         RETURN_IF_ERROR(gateway->open(address, port));
         return std::unique_ptr<Gateway>(std::move(gateway));
     } catch (const std::exception& error) {

@@ -9,6 +9,7 @@
 
 #include "common/protocol.hpp"
 #include "common/result.hpp"
+#include "common/settings.hpp"
 
 namespace iwalk {
 
@@ -38,11 +39,14 @@ class Gateway {
     };
 
     // Listens at `address` (a number or a name):`port` (port 0: any free one). Fails when the port is in use,
-    // saying so.
+    // saying so. With a `token`, only clients that bring it are let in; without one it listens on the
+    // loopback only.
     static Result<std::unique_ptr<Gateway>> listen(const std::string& address, std::uint16_t port,
-                                                   const protocol::Welcome& welcome);
+                                                   const protocol::Welcome& welcome,
+                                                   const std::string& token = {});
     static Result<std::unique_ptr<Gateway>> listen(const std::string& address, std::uint16_t port,
-                                                   const protocol::Welcome& welcome, const Limits& limits);
+                                                   const protocol::Welcome& welcome, const Limits& limits,
+                                                   const std::string& token = {});
     // Says good-bye to every client and closes everything; what is unsent has a quarter of a second to go
     // out.
     virtual ~Gateway() = default;
@@ -54,13 +58,24 @@ class Gateway {
     // to its sender. Never blocks.
     virtual std::optional<protocol::CameraRequest> nextRequest() = 0;
 
+    // The settings, when a client changed them since the last call. Whatever came before a request that
+    // nextRequest() gave out is known by then. Never blocks.
+    virtual std::optional<Settings> newSettings() = 0;
+
+    struct PreviewWish {
+        bool wanted = false;       // some client wants small pictures of the wall
+        std::uint64_t joined = 0;  // grows when one more does
+    };
+    virtual PreviewWish previewWish() const = 0;
+
     // Tells every client that a frame is on the wall. `frame.sequence` is the number of the request that
     // nextRequest() gave out, 0 for a frame that nobody asked for; the last 4096 numbers are remembered. From
     // any thread.
     virtual void frameDone(protocol::FrameDone frame) = 0;
     // Sends a captured tile to the client whose request `image.sequence` was, if it is still there. Sequence
     // numbers are the gateway's own between nextRequest() and here (clients' numbers may collide), and are
-    // translated back. From any thread.
+    // translated back. A preview goes to every client that wants some and has taken what it was sent before;
+    // for others it is dropped. From any thread.
     virtual void tileImage(protocol::TileImage image) = 0;
 };
 

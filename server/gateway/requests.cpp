@@ -1,5 +1,7 @@
 #include "server/gateway/requests.hpp"
 
+#include <utility>
+
 #include "common/check.hpp"
 
 namespace iwalk {
@@ -42,6 +44,16 @@ std::optional<Requests::Taken> Requests::take() {
     if (origins_.size() > kRemembered) origins_.erase(origins_.begin());
     waiting.request.sequence = number;
     return Taken{waiting.request, wasFull && !full()};
+}
+
+void Requests::changeSettings(const Settings& settings) {
+    const std::lock_guard lock(mutex_);
+    settings_ = settings;
+}
+
+std::optional<Settings> Requests::takeSettings() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(settings_, std::nullopt);
 }
 
 std::optional<Requests::Origin> Requests::origin(std::uint64_t sequence) const {

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "common/protocol.hpp"
+#include "common/settings.hpp"
 
 namespace iwalk {
 
@@ -42,6 +43,10 @@ class Requests {
     static constexpr std::size_t kRemembered =
         4096;  // requests whose origin is known; far more than are drawn at once
 
+    // Written by the gateway's thread, read by the frame loop.
+    std::atomic<int> previewClients{0};
+    std::atomic<std::uint64_t> previewsJoined{0};
+
     explicit Requests(const Limits& limits) : limits_(limits) {}
 
     // In lock step appends, otherwise replaces the newest camera. False when the queue is full now: add no
@@ -51,6 +56,9 @@ class Requests {
     void drop(const Sender& sender);
     // The oldest in lock step, else the newest camera, once; nothing when that one is held back.
     std::optional<Taken> take();
+    // The settings from now on, and once to whom asks whether they changed.
+    void changeSettings(const Settings& settings);
+    std::optional<Settings> takeSettings();
     // Who asked for the request that take() gave the number `sequence`; nothing if forgotten.
     std::optional<Origin> origin(std::uint64_t sequence) const;
 
@@ -66,6 +74,7 @@ class Requests {
     mutable std::mutex mutex_;  // guards all below
     std::deque<Waiting> lockstep_;
     std::optional<Waiting> newest_;
+    std::optional<Settings> settings_;  // changed and not taken yet
     std::map<std::uint64_t, Origin> origins_;
     std::uint64_t lastNumber_ = 0;
 };

@@ -35,8 +35,22 @@ std::string refusal(const std::vector<std::byte>& bytes) {
 }
 
 TEST(Protocol, GoldenBytes) {
-    EXPECT_EQ(hex(encode(Hello{})), "05000000010000000200000001");
-    EXPECT_EQ(hex(encode(Control{true})), "010000000400000001");
+    EXPECT_EQ(hex(encode(Hello{})),
+              "0800000001000000030000000100"
+              "0000");
+    EXPECT_EQ(hex(encode(Hello{kVersion, false, true, "key"})),
+              "0b00000001000000030000000001"
+              "03006b6579");
+    EXPECT_EQ(hex(encode(Control{true, 2})), "05000000040000000102000000");
+    EXPECT_EQ(hex(encode(ChangeSettings{{{"near", "1"}}})),
+              "0d00000008000000"
+              "01000000"
+              "04006e656172"
+              "010031");
+    EXPECT_EQ(hex(encode(SettingsNow{{}, "no"})),
+              "0800000009000000"
+              "00000000"
+              "02006e6f");
     EXPECT_EQ(hex(encode(Failure{"no"})), "040000000700000002006e6f");
 
     CameraRequest request{3, kLockstep | kCaptureColor, {}};
@@ -83,7 +97,7 @@ TEST(Protocol, WelcomeRoundTrip) {
 }
 
 TEST(Protocol, FrameDoneRoundTrip) {
-    FrameDone done{9, 10, 16.5, {{}, {}}};
+    FrameDone done{9, 10, 16.5, {{}, {}}, {{1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 50}};
     done.tiles[1] = {.tile = 1,
                      .guessMs = 2.5,
                      .pyramidMs = 3.5,
@@ -94,7 +108,9 @@ TEST(Protocol, FrameDoneRoundTrip) {
                      .hiddenRanges = 10,
                      .screenErrorPx = 8.5,
                      .badPages = 12,
-                     .peakRssBytes = 13};
+                     .peakRssBytes = 13,
+                     .nearDepth = 14.5,
+                     .midDepth = 15.5};
     const FrameDone same = roundTrip(done);
     EXPECT_EQ(same.timeMs, 16.5);
     ASSERT_EQ(same.tiles.size(), 2u);
@@ -108,6 +124,18 @@ TEST(Protocol, FrameDoneRoundTrip) {
     EXPECT_EQ(same.tiles[1].screenErrorPx, 8.5);
     EXPECT_EQ(same.tiles[1].badPages, 12u);
     EXPECT_EQ(same.tiles[1].peakRssBytes, 13u);
+    EXPECT_EQ(same.tiles[1].nearDepth, 14.5);
+    EXPECT_EQ(same.tiles[1].midDepth, 15.5);
+    EXPECT_EQ(same.camera, done.camera);
+}
+
+TEST(Protocol, SettingsRoundTrip) {
+    const SettingsNow same = roundTrip(SettingsNow{{{"mode", "plp"}, {"near", "0.5"}}, "größer"});
+    ASSERT_EQ(same.settings.size(), 2u);
+    EXPECT_EQ(same.settings[1].name, "near");
+    EXPECT_EQ(same.settings[1].value, "0.5");
+    EXPECT_EQ(same.refusal, "größer");
+    ASSERT_EQ(roundTrip(ChangeSettings{{{"mode", "plp"}}}).settings.size(), 1u);
 }
 
 TEST(Protocol, TileImageRoundTrip) {
@@ -119,9 +147,9 @@ TEST(Protocol, TileImageRoundTrip) {
 
 TEST(Protocol, HeaderRefusals) {
     std::vector<std::byte> bytes = encode(Hello{});
-    EXPECT_TRUE(decode(bytes, 5).ok());
-    EXPECT_FALSE(decode(bytes, 4).ok());
-    bytes[4] = std::byte{8};
+    EXPECT_TRUE(decode(bytes, 8).ok());
+    EXPECT_FALSE(decode(bytes, 7).ok());
+    bytes[4] = std::byte{10};
     EXPECT_FALSE(decode(bytes).ok());
     bytes[4] = std::byte{0};
     EXPECT_FALSE(decode(bytes).ok());
@@ -140,7 +168,7 @@ TEST(Protocol, OtherVersionIsNamed) {
 TEST(Protocol, TrailingBytesRefused) {
     std::vector<std::byte> bytes = encode(Hello{});
     bytes.push_back(std::byte{0});
-    bytes[0] = std::byte{6};
+    bytes[0] = std::byte{9};
     EXPECT_NE(refusal(bytes).find("after the end"), std::string::npos);
 }
 
@@ -171,9 +199,9 @@ TEST(Protocol, ImpossibleCamerasRefused) {
 
 TEST(Protocol, CountsBeyondThePayloadRefused) {
     std::vector<std::byte> bytes = encode(FrameDone{1, 1, 0, {TileStats{}}});
-    bytes[kHeaderBytes + 24] = std::byte{2};  // two tiles in the bytes of one
+    bytes[kHeaderBytes + 104] = std::byte{2};  // two tiles in the bytes of one
     EXPECT_NE(refusal(bytes).find("items"), std::string::npos);
-    bytes[kHeaderBytes + 27] = std::byte{0xff};
+    bytes[kHeaderBytes + 107] = std::byte{0xff};
     EXPECT_NE(refusal(bytes).find("items"), std::string::npos);
 }
 

@@ -16,9 +16,9 @@ std::string refusal(const std::string& name, const std::string& text) {
 TEST(Settings, TableNamesEverySetting) {
     std::vector<std::string> names;
     for (const SettingInfo& info : settingTable()) names.emplace_back(info.name);
-    EXPECT_EQ(names,
-              (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background", "near",
-                                        "level", "mode", "occlusion", "plp-budget", "plp-rays", "show"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background",
+                                               "near", "level", "mode", "occlusion", "plp-budget", "plp-rays",
+                                               "show", "preview-fps", "preview-size", "preview-rate"}));
 }
 
 TEST(Settings, DefaultsAreWhatTheHelpSays) {
@@ -33,25 +33,15 @@ TEST(Settings, DefaultsAreWhatTheHelpSays) {
 
 TEST(Settings, TextIsReadBack) {
     Settings settings;
-    for (const auto& [name, text] :
-         std::vector<std::pair<std::string, std::string>>{{"cache", "512M"},
-                                                          {"cache", "65537"},
-                                                          {"fetch-threads", "64"},
-                                                          {"shading", "smooth"},
-                                                          {"shading", "flat"},
-                                                          {"ramp", "height"},
-                                                          {"ramp", "none"},
-                                                          {"background", "#203040"},
-                                                          {"near", "0.1"},
-                                                          {"level", "full"},
-                                                          {"level", "12"},
-                                                          {"mode", "plp"},
-                                                          {"mode", "frustum"},
-                                                          {"mode", "cplp"},
-                                                          {"occlusion", "queries"},
-                                                          {"show", "overdraw"},
-                                                          {"plp-budget", "70000"},
-                                                          {"plp-rays", "0.05"}}) {
+    for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+             {"cache", "512M"},      {"cache", "65537"},        {"fetch-threads", "64"},
+             {"shading", "smooth"},  {"shading", "flat"},       {"ramp", "height"},
+             {"ramp", "none"},       {"background", "#203040"}, {"near", "0.1"},
+             {"level", "full"},      {"level", "12"},           {"mode", "plp"},
+             {"mode", "frustum"},    {"mode", "cplp"},          {"occlusion", "queries"},
+             {"show", "overdraw"},   {"plp-budget", "70000"},   {"plp-rays", "0.05"},
+             {"preview-fps", "0"},   {"preview-fps", "12.5"},   {"preview-size", "320"},
+             {"preview-rate", "64k"}}) {
         ASSERT_TRUE(setSetting(settings, name, text).ok()) << name << " " << text;
         EXPECT_EQ(settingText(settings, name), text);
     }
@@ -74,7 +64,7 @@ TEST(Settings, RefusalsNameTheSettingAndWhatIsRight) {
     for (const char* bad : {"", "red", "12345", "1234567", "##123456", "-12345"}) {
         EXPECT_NE(refusal("background", bad), "") << bad;
     }
-    for (const char* bad : {"", "-1", "nan", "inf", "1e999", "1m"})
+    for (const char* bad : {"", "-1", "nan", "inf", "1e999", "1e16", "1m"})
         EXPECT_NE(refusal("near", bad), "") << bad;
     for (const char* bad : {"", "-1", "255", "256", "1.5", "finest"})
         EXPECT_NE(refusal("level", bad), "") << bad;
@@ -84,6 +74,32 @@ TEST(Settings, RefusalsNameTheSettingAndWhatIsRight) {
         EXPECT_NE(refusal("plp-budget", bad), "") << bad;
     for (const char* bad : {"", "0", "-1", "nan", "inf", "10.1", "0.1%"})
         EXPECT_NE(refusal("plp-rays", bad), "") << bad;
+    for (const char* bad : {"", "-1", "61", "nan", "five"}) EXPECT_NE(refusal("preview-fps", bad), "") << bad;
+    for (const char* bad : {"", "15", "4097", "1.5"}) EXPECT_NE(refusal("preview-size", bad), "") << bad;
+    for (const char* bad : {"", "0", "1023", "-1"}) EXPECT_NE(refusal("preview-rate", bad), "") << bad;
+}
+
+TEST(Settings, WhatIsNotLiveStaysWhileServersRun) {
+    Settings settings;
+    EXPECT_TRUE(changeSetting(settings, "mode", "plp").ok());
+    EXPECT_EQ(settings.mode, Mode::plp);
+    EXPECT_TRUE(changeSetting(settings, "cache", "1G").ok());  // as it is
+    const Result<void> refused = changeSetting(settings, "cache", "2G");
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("--cache 2G"), std::string::npos);
+    EXPECT_EQ(settings.cacheBytes, Settings().cacheBytes);
+    EXPECT_FALSE(changeSetting(settings, "mode", "all").ok());
+    EXPECT_EQ(settings.mode, Mode::plp);
+}
+
+TEST(Settings, WhatDoesNotGoTogetherIsRefused) {
+    Settings settings;
+    EXPECT_FALSE(changeSetting(settings, "show", "priority").ok());
+    EXPECT_EQ(settings.show, Show::none);
+    ASSERT_TRUE(changeSetting(settings, "mode", "plp").ok());
+    ASSERT_TRUE(changeSetting(settings, "show", "priority").ok());
+    EXPECT_FALSE(changeSetting(settings, "mode", "frustum").ok());
+    EXPECT_EQ(settings.mode, Mode::plp);
 }
 
 TEST(Settings, ARefusalChangesNothing) {

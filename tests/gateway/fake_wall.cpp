@@ -7,9 +7,9 @@
 
 namespace iwalk::testing {
 
-FakeWall::FakeWall(Behaviour behaviour, protocol::Welcome welcome)
+FakeWall::FakeWall(Behaviour behaviour, protocol::Welcome welcome, std::uint16_t port)
     : behaviour_(std::move(behaviour)), welcome_(welcome.tiles.empty() ? smallWall() : std::move(welcome)) {
-    auto gateway = Gateway::listen("127.0.0.1", 0, welcome_);
+    auto gateway = Gateway::listen("127.0.0.1", port, welcome_);
     EXPECT_TRUE(gateway.ok());
     gateway_ = std::move(gateway).value();
     port_ = gateway_->port();
@@ -26,30 +26,40 @@ std::vector<double> FakeWall::drawn() const {
     return drawn_;
 }
 
+std::vector<Mode> FakeWall::modes() const {
+    const std::lock_guard lock(mutex_);
+    return modes_;
+}
+
 void FakeWall::loop() {
+    Settings settings;
     while (!stop_) {
         if (drawn().size() >= behaviour_.vanishAfter) return gateway_.reset();
         const auto request = gateway_->nextRequest();
-        if (request) draw(*request);
+        settings = gateway_->newSettings().value_or(settings);
+        if (request) draw(*request, settings.mode);
         if (!request) std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
 }
 
-void FakeWall::draw(const protocol::CameraRequest& request) {
+void FakeWall::draw(const protocol::CameraRequest& request, Mode mode) {
     std::this_thread::sleep_for(behaviour_.frameTime);
     std::size_t frame = 0;
     {
         const std::lock_guard lock(mutex_);
         drawn_.push_back(request.camera.eye.x);
+        modes_.push_back(mode);
         frame = drawn_.size();
     }
-    protocol::FrameDone done{request.sequence, frame, 10 + request.camera.eye.x, {}};
+    protocol::FrameDone done{request.sequence, frame, 10 + request.camera.eye.x, {}, request.camera};
     for (std::uint32_t tile = 0; tile < welcome_.tiles.size(); ++tile) {
         capture(request, tile);
         protocol::TileStats stats;
         stats.tile = tile;
         stats.drawMs = 2.5;
         stats.triangles = 1000 + tile;
+        stats.nearDepth = 1 + tile;
+        stats.midDepth = 4;
         stats.peakRssBytes = (frame == 2 ? 900u : 500u) + tile;
         done.tiles.push_back(stats);
     }

@@ -24,15 +24,16 @@ class FakeWall {
     };
 
     FakeWall() : FakeWall(Behaviour{}) {}
-    explicit FakeWall(Behaviour behaviour, protocol::Welcome welcome = {});
+    explicit FakeWall(Behaviour behaviour, protocol::Welcome welcome = {}, std::uint16_t port = 0);
     ~FakeWall();
 
     std::uint16_t port() const { return port_; }
     std::vector<double> drawn() const;  // eye.x of every frame, in order
+    std::vector<Mode> modes() const;    // and the setting `mode`
 
   private:
     void loop();
-    void draw(const protocol::CameraRequest& request);
+    void draw(const protocol::CameraRequest& request, Mode mode);
     void capture(const protocol::CameraRequest& request, std::uint32_t tile);
 
     const Behaviour behaviour_;
@@ -41,7 +42,8 @@ class FakeWall {
     std::uint16_t port_ = 0;
     std::atomic<bool> stop_{false};
     mutable std::mutex mutex_;
-    std::vector<double> drawn_;  // guarded by mutex_
+    std::vector<double> drawn_;  // guarded by mutex_, as is modes_
+    std::vector<Mode> modes_;
     std::thread thread_;
 };
 

@@ -66,6 +66,7 @@ TEST(Gateway, ControlIsHandedOverByASecondHello) {
     RawClient first(gateway->port()), second(gateway->port());
     EXPECT_TRUE(first.greet());
     EXPECT_FALSE(second.greet());
+    EXPECT_EQ(first.receiveA<Control>()->waiting, 1u);
     first.send(protocol::Hello{protocol::kVersion, false});
     EXPECT_FALSE(first.receiveA<Control>()->granted);
     EXPECT_TRUE(second.receiveA<Control>()->granted);
@@ -212,6 +213,31 @@ TEST(Gateway, PortInUseIsAnErrorThatHelps) {
     ASSERT_FALSE(second.ok());
     EXPECT_NE(second.error().message.find(fmt::format("127.0.0.1:{}", gateway->port())), std::string::npos);
     EXPECT_NE(second.error().message.find("in use"), std::string::npos);
+}
+
+TEST(Gateway, BeyondTheLoopbackATokenIsNeeded) {
+    const auto open = Gateway::listen("0.0.0.0", 0, testing::smallWall());
+    ASSERT_FALSE(open.ok());
+    EXPECT_NE(open.error().message.find("--token-file"), std::string::npos);
+    EXPECT_TRUE(Gateway::listen("0.0.0.0", 0, testing::smallWall(), "0123456789abcdef").ok());
+    EXPECT_TRUE(Gateway::listen("127.0.0.2", 0, testing::smallWall()).ok());
+}
+
+TEST(Gateway, OnlyWhoHasTheTokenGetsIn) {
+    const auto gateway = Gateway::listen("127.0.0.1", 0, testing::smallWall(), "0123456789abcdef");
+    ASSERT_TRUE(gateway.ok());
+    const auto answer = [&](const std::string& token) {
+        RawClient client((*gateway)->port());
+        client.send(protocol::Hello{protocol::kVersion, true, true, token});
+        const auto message = client.receive();
+        const auto* failure = message ? std::get_if<protocol::Failure>(&*message) : nullptr;
+        EXPECT_TRUE(failure || std::holds_alternative<protocol::Welcome>(*message));
+        return failure ? failure->reason : "welcome";
+    };
+    EXPECT_NE(answer("").find("--token-file"), std::string::npos);
+    EXPECT_NE(answer("0123456789abcdeX").find("not the server's token"), std::string::npos);
+    EXPECT_FALSE((*gateway)->previewWish().wanted);
+    EXPECT_EQ(answer("0123456789abcdef"), "welcome");
 }
 
 TEST(Gateway, AddressesThatAreNotHere) {

@@ -18,13 +18,15 @@ Welcome sampleWelcome() {
 }
 
 std::vector<Message> samples() {
-    return {Hello{},
+    return {Hello{kVersion, true, true, "secret"},
             CameraRequest{1, kLockstep, {}},
             sampleWelcome(),
             Control{true},
             FrameDone{1, 2, 3.5, {TileStats{}, TileStats{.tile = 1, .drawMs = 2}}},
             TileImage{1, 1, ImageKind::exr, std::vector<std::byte>(50, std::byte{1})},
-            Failure{"grün"}};
+            Failure{"grün"},
+            ChangeSettings{{{"mode", "plp"}, {"near", "0.5"}}},
+            SettingsNow{{{"mode", "plp"}}, "no"}};
 }
 
 Result<Message> decode(std::span<const std::byte> bytes) {

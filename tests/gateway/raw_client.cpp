@@ -67,9 +67,9 @@ bool RawClient::greet(bool control) {
     EXPECT_TRUE(send(protocol::Hello{protocol::kVersion, control}));
     const auto welcome = receive();
     EXPECT_TRUE(welcome && std::holds_alternative<protocol::Welcome>(*welcome));
-    const auto granted = receive();
-    EXPECT_TRUE(granted && std::holds_alternative<protocol::Control>(*granted));
-    return granted && std::get<protocol::Control>(*granted).granted;
+    const auto granted = receiveA<protocol::Control>();
+    EXPECT_TRUE(granted);
+    return granted && granted->granted;
 }
 
 bool RawClient::sendCamera(std::uint64_t sequence, std::uint8_t flags) {
@@ -90,7 +90,7 @@ protocol::Welcome smallWall() {
     welcome.wallWidth = 36;
     welcome.wallHeight = 8;
     welcome.tiles = {{"left", "host-a", 0, 0, 0, 16, 8}, {"right", "host-b", 1, 20, 0, 16, 8}};
-    welcome.settings = {{"cache", "1G"}, {"shading", "auto"}};
+    welcome.settings = {{"cache", "1G"}, {"mode", "cplp"}};
     return welcome;
 }
 

@@ -32,7 +32,7 @@ TEST(Report, HasTheKeysOfTheDesign) {
     EXPECT_EQ(report["version"], "9.8.7");
     EXPECT_EQ(report["dataset"], json({{"triangles", 123}, {"bytes", 4567}}));
     EXPECT_EQ(report["wall"], json({{"width_px", 36}, {"height_px", 8}, {"tiles", 2}}));
-    EXPECT_EQ(report["settings"], json({{"cache", "1G"}, {"shading", "auto"}}));
+    EXPECT_EQ(report["settings"], json({{"cache", "1G"}, {"mode", "cplp"}}));
     ASSERT_EQ(report["frames"].size(), 2u);
     EXPECT_EQ(keys(report["frames"][1]), (std::vector<std::string>{"frame", "tiles", "time_ms"}));
     EXPECT_EQ(report["frames"][1]["frame"], 1);
