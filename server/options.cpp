@@ -57,6 +57,12 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
     app.add_option("--resume", options.resumeFile,
                    "rank 0 keeps the wall's last camera in this file, and begins with it when it is there")
         ->type_name("FILE");
+    app.add_option(
+           "--startup-timeout", options.startTimeout,
+           "when not all ranks are ready after so many seconds, says who is missing and ends the wall; more "
+           "for slow disks")
+        ->check(CLI::Range(1, 86400))
+        ->type_name("SECONDS");
     app.add_option("--pattern", options.pattern,
                    "shows a test pattern instead of a dataset, with --present window or file: grid (lines "
                    "and circles "

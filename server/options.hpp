@@ -19,6 +19,7 @@ struct ServerOptions {
     std::uint16_t port = 0;             // 0: any free one
     std::string outputDirectory;        // of --present file; empty: tiles are not written
     std::string resumeFile;             // empty: none
+    int startTimeout = 120;             // s
     bool window = false;                // --present window
     Pattern pattern = Pattern::none;    // instead of a dataset
     bool tilesOnly = false;             // just say how many tiles the wall has
