@@ -3,7 +3,6 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/prctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -37,16 +36,14 @@ bool speaksForAll() {
     return !rank || std::string(rank) == "0";
 }
 
-std::string hostName() {
-    char name[256] = "";
-    gethostname(name, sizeof name - 1);
-    return name;
-}
-
 void logTo(const std::string& who) {
     auto logger = spdlog::stderr_logger_mt("server");
     logger->set_pattern(who + ": %v");
     spdlog::set_default_logger(logger);
+}
+
+const std::string& hostOf(const Sync& sync) {
+    return sync.hosts()[static_cast<std::size_t>(sync.rank())];
 }
 
 // All ranks go on, or all stop and every different reason is said once.
@@ -72,14 +69,12 @@ Result<void> readInputs(ServerOptions& options, Dataset& dataset, const Sync& sy
     return {};
 }
 
-// From here on rank i draws tile i. The result is the host of each tile.
-Result<std::vector<std::string>> placeRanks(const Wall& wall, Sync& sync) {
-    const std::vector<std::string> hosts = sync.gatherText(hostName());
+// From here on rank i draws tile i.
+Result<void> placeRanks(const Wall& wall, Sync& sync) {
+    const std::vector<std::string> hosts = sync.hosts();
     ASSIGN_OR_RETURN(const std::vector<std::size_t> tiles, tilesOfRanks(wall, hosts));
-    std::vector<std::string> ofTiles(hosts.size());
-    for (std::size_t rank = 0; rank < hosts.size(); ++rank) ofTiles[tiles[rank]] = hosts[rank];
     sync.renumber(static_cast<int>(tiles[static_cast<std::size_t>(sync.rank())]));
-    return ofTiles;
+    return {};
 }
 
 protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& dataset,
@@ -134,8 +129,7 @@ Result<void> prepareOutput(Rank& rank, const ServerOptions& options, std::size_t
     return {};
 }
 
-Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& dataset, const Sync& sync,
-                     const std::vector<std::string>& hosts) {
+Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& dataset, const Sync& sync) {
     const auto number = static_cast<std::size_t>(sync.rank());
     RETURN_IF_ERROR(prepareOutput(rank, options, number));
     ASSIGN_OR_RETURN(rank.pipeline, TilePipeline::create(dataset, options.wall, number, options.settings));
@@ -145,7 +139,7 @@ Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& da
         ASSIGN_OR_RETURN(token, readToken(options.tokenFile));
     }
     ASSIGN_OR_RETURN(rank.gateway, Gateway::listen(options.address, options.port,
-                                                   makeWelcome(options, dataset, hosts), token));
+                                                   makeWelcome(options, dataset, sync.hosts()), token));
     return {};
 }
 
@@ -179,13 +173,12 @@ void announce(const ServerOptions& options, const Dataset& dataset, const Rank& 
 int serve(Sync& sync, ServerOptions& options) {
     Dataset dataset;
     if (!allFine(sync, readInputs(options, dataset, sync))) return EXIT_FAILURE;
-    const Result<std::vector<std::string>> hosts = placeRanks(options.wall, sync);
-    if (!allFine(sync, hosts.ok() ? Result<void>() : hosts.error())) return EXIT_FAILURE;
-    logTo(fmt::format("iwalk-server: rank {} on {}", sync.rank(), hostName()));
+    if (!allFine(sync, placeRanks(options.wall, sync))) return EXIT_FAILURE;
+    logTo(fmt::format("iwalk-server: rank {} on {}", sync.rank(), hostOf(sync)));
     Rank rank;
-    if (!allFine(sync, prepare(rank, options, dataset, sync, *hosts))) return EXIT_FAILURE;
+    if (!allFine(sync, prepare(rank, options, dataset, sync))) return EXIT_FAILURE;
     const SwapGroup together(rank.output->swapGroupDriver(), [&](bool mine) { return sync.agree(mine); });
-    if (sync.rank() == 0) announce(options, dataset, rank, *hosts, together.joined());
+    if (sync.rank() == 0) announce(options, dataset, rank, sync.hosts(), together.joined());
     runFrames({sync, *rank.pipeline, *rank.output, rank.gateway.get(),
                options.wall.tiles[static_cast<std::size_t>(sync.rank())].name, options.outputDirectory,
                sync.rank() == 0 ? options.resumeFile : "", dataset, options.wall, options.settings,
@@ -195,16 +188,15 @@ int serve(Sync& sync, ServerOptions& options) {
 
 int servePattern(Sync& sync, ServerOptions& options) {
     if (!allFine(sync, readWall(options, sync))) return EXIT_FAILURE;
-    const Result<std::vector<std::string>> hosts = placeRanks(options.wall, sync);
-    if (!allFine(sync, hosts.ok() ? Result<void>() : hosts.error())) return EXIT_FAILURE;
+    if (!allFine(sync, placeRanks(options.wall, sync))) return EXIT_FAILURE;
     const auto number = static_cast<std::size_t>(sync.rank());
     Rank rank;
     if (!allFine(sync, prepareOutput(rank, options, number))) return EXIT_FAILURE;
     const std::string file =
         options.window ? "" : tileFile(options.outputDirectory, 0, options.wall.tiles[number].name);
     const Result<void> shown =
-        showPattern({sync, *rank.output, drawPattern(options.pattern, options.wall, number, hostName()), file,
-                     stopRequested});
+        showPattern({sync, *rank.output, drawPattern(options.pattern, options.wall, number, hostOf(sync)),
+                     file, stopRequested});
     return allFine(sync, shown) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
@@ -231,7 +223,7 @@ int main(int argc, char** argv) {
     std::signal(SIGTERM, requestStop);
     std::signal(SIGINT, requestStop);
     std::signal(SIGPIPE, SIG_IGN);
-    Result<std::unique_ptr<Sync>> sync = startMpi(argc, argv);
+    Result<std::unique_ptr<Sync>> sync = startMpi(argc, argv, options.startTimeout);
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // no rank outlives its launcher
     if (!sync) {
         std::fprintf(stderr, "iwalk-server: %s\n", sync.error().message.c_str());

@@ -34,13 +34,16 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
         "  mpirun -np TILES iwalk-server --dataset DATASET --wall WALL.toml");
     app.option_defaults()->always_capture_default();
     app.set_version_flag("--version", std::string("iwalk-server ") + kVersion);
-    std::string listen = kDefaultListen, present = "none";
+    std::string listen = kDefaultListen, present = "none", patternName;
     std::map<std::string, std::string> given;
-    const std::map<std::string, Pattern> patterns{
-        {"grid", Pattern::grid}, {"blend", Pattern::blend}, {"identity", Pattern::identity}};
+    const std::map<std::string, Pattern> patterns{{"", Pattern::none},
+                                                  {"grid", Pattern::grid},
+                                                  {"blend", Pattern::blend},
+                                                  {"identity", Pattern::identity}};
     app.add_option("--dataset", options.dataset, "directory that iwalk-preprocess made; every rank reads it")
         ->type_name("DIR");
-    app.add_option("--wall", options.wallFile, "TOML file of the wall; tile i is drawn by rank i")
+    app.add_option("--wall", options.wallFile,
+                   "TOML file of the wall; tile i is drawn by rank i, or by a rank on the host that it names")
         ->required()
         ->type_name("FILE");
     app.add_option("--listen", listen, "where rank 0 waits for clients; port 0 takes any free one")
@@ -61,11 +64,17 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
     app.add_option("--resume", options.resumeFile,
                    "rank 0 keeps the wall's last camera in this file, and begins with it when it is there")
         ->type_name("FILE");
-    app.add_option("--pattern", options.pattern,
+    app.add_option(
+           "--startup-timeout", options.startTimeout,
+           "when not all ranks are ready after so many seconds, says who is missing and ends the wall; more "
+           "for slow disks")
+        ->check(CLI::Range(1, 86400))
+        ->type_name("SECONDS");
+    app.add_option("--pattern", patternName,
                    "shows a test pattern instead of a dataset, with --present window or file: grid (lines "
                    "and circles "
                    "across the wall), blend (grey bands), identity (names of tiles)")
-        ->transform(CLI::CheckedTransformer(patterns))
+        ->check(CLI::IsMember({"grid", "blend", "identity"}))
         ->type_name("grid|blend|identity")
         ->default_str("");
     app.add_flag("--tiles", options.tilesOnly, "prints how many tiles, and so ranks, the wall has, and ends");
@@ -77,6 +86,7 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
             ->default_str(settingText(options.settings, setting.name));
     try {
         app.parse(argc, argv);
+        options.pattern = patterns.at(patternName);
         const bool pattern = options.pattern != Pattern::none;
         if (options.dataset.empty() && !options.tilesOnly && !pattern) throw CLI::RequiredError("--dataset");
         if (Result<void> parsed = parseListen(listen, options); !parsed)

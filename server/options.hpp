@@ -20,6 +20,7 @@ struct ServerOptions {
     std::string tokenFile;              // of the secret that clients must bring; empty: none
     std::string outputDirectory;        // of --present file; empty: tiles are not written
     std::string resumeFile;             // empty: none
+    int startTimeout = 120;             // s
     bool window = false;                // --present window
     Pattern pattern = Pattern::none;    // instead of a dataset
     bool tilesOnly = false;             // just say how many tiles the wall has

@@ -103,6 +103,7 @@ Result<void> GlfwWindow::open(const Tile& tile, const glm::ivec2& place) {
     window_ = glfwCreateWindow(width_, height_, tile.name.c_str(), monitor, nullptr);
     if (!window_) return fail("display {} gives no window with OpenGL 4.5: {}", displayName(), glfwReason());
     glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);  // no picture changes while the screen is drawn
     glfwSetWindowUserPointer(window_, this);
     glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) {
         static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->lost_ = true;

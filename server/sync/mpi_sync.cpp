@@ -3,10 +3,16 @@
 // non-blocking and polled.
 
 #include <mpi.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <list>
+#include <mutex>
 #include <thread>
 
 #include "server/sync/sync.hpp"
@@ -14,7 +20,7 @@
 namespace iwalk {
 namespace {
 
-constexpr int kTileTag = 1, kStopTag = 2;
+constexpr int kTileTag = 1, kStopTag = 2, kVoteTag = 3;
 constexpr std::uint32_t kTileMagic = 0x4C545749;  // "IWTL"
 constexpr std::uint64_t kMaxTileBytes = std::uint64_t{1} << 30;
 
@@ -51,12 +57,53 @@ class Patience {
     int pause_ = 20;
 };
 
+std::string hostName() {
+    char name[256] = "";
+    gethostname(name, sizeof name - 1);
+    return name;
+}
+
+// MPI comes up when all ranks have started. Until this is destroyed, and at most for so many seconds.
+class StartWatch {
+  public:
+    explicit StartWatch(int seconds) : seconds_(seconds), thread_([this] { watch(); }) {}
+    ~StartWatch() {
+        {
+            const std::lock_guard lock(mutex_);
+            up_ = true;
+        }
+        changed_.notify_all();
+        thread_.join();
+    }
+
+  private:
+    void watch() {
+        std::unique_lock lock(mutex_);
+        if (changed_.wait_for(lock, std::chrono::seconds(seconds_), [this] { return up_; })) return;
+        const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
+        const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+        std::fprintf(
+            stderr,
+            "iwalk-server: rank %s of %s on %s is here, but not all others have started within %d s: who "
+            "does not say this is missing\n",
+            rank ? rank : "?", size ? size : "?", hostName().c_str(), seconds_);
+        std::_Exit(EXIT_FAILURE);
+    }
+
+    const int seconds_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool up_ = false;  // guarded by mutex_
+    std::thread thread_;
+};
+
 class MpiSync : public Sync {
   public:
-    MpiSync() {
+    explicit MpiSync(int timeout) : timeout_(timeout) {
         must(MPI_Comm_dup(MPI_COMM_WORLD, &world_));
         must(MPI_Comm_rank(world_, &rank_));
         must(MPI_Comm_size(world_, &size_));
+        hosts_ = gatherText(hostName());
     }
     ~MpiSync() override {
         drain();
@@ -69,15 +116,8 @@ class MpiSync : public Sync {
     int rank() const override { return rank_; }
     int size() const override { return size_; }
 
-    bool agree(bool mine) override {
-        const int in = mine ? 1 : 0;
-        int out = 0;
-        MPI_Request request;
-        must(MPI_Iallreduce(&in, &out, 1, MPI_INT, MPI_MIN, world_, &request));
-        finish(request);
-        return out == 1;
-    }
-
+    bool agree(bool mine) override;
+    const std::vector<std::string>& hosts() const override { return hosts_; }
     std::vector<std::string> gatherText(const std::string& mine) override;
     void renumber(int rank) override;
 
@@ -125,17 +165,66 @@ class MpiSync : public Sync {
             patience.wait();
         }
     }
+    bool collectVotes();
+    [[noreturn]] void nameMissing(const std::vector<MPI_Request>& votes);
     void dropSent();
     void drain();
     void takeStop();
 
+    const int timeout_;  // s
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
+    std::vector<std::string> hosts_;  // by rank
     std::function<void()> idleWork_;
     std::list<Outgoing> outgoing_;          // a list: MPI reads the bytes where they are
     std::vector<protocol::TileImage> own_;  // rank 0's, which need no MPI
     bool stopAsked_ = false;
 };
+
+bool MpiSync::agree(bool mine) {
+    int vote = mine ? 1 : 0;
+    MPI_Request request;
+    if (rank_ == 0) {
+        const bool others = collectVotes();
+        vote = mine && others ? 1 : 0;
+    } else {
+        must(MPI_Isend(&vote, 1, MPI_INT, 0, kVoteTag, world_, &request));
+        finish(request);
+    }
+    must(MPI_Ibcast(&vote, 1, MPI_INT, 0, world_, &request));
+    finish(request);
+    return vote == 1;
+}
+
+// Whether all others say true, on rank 0.
+bool MpiSync::collectVotes() {
+    const std::size_t others = static_cast<std::size_t>(size_) - 1;
+    std::vector<int> votes(others);
+    std::vector<MPI_Request> open(others);
+    for (std::size_t i = 0; i < others; ++i)
+        must(MPI_Irecv(&votes[i], 1, MPI_INT, static_cast<int>(i) + 1, kVoteTag, world_, &open[i]));
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(timeout_);
+    Patience patience;
+    for (int done = 0; must(MPI_Testall(size_ - 1, open.data(), &done, MPI_STATUSES_IGNORE)), !done;) {
+        if (std::chrono::steady_clock::now() > end) nameMissing(open);
+        patience.wait();
+    }
+    return std::all_of(votes.begin(), votes.end(), [](int vote) { return vote == 1; });
+}
+
+void MpiSync::nameMissing(const std::vector<MPI_Request>& votes) {
+    std::string missing;
+    for (std::size_t i = 0; i < votes.size(); ++i) {
+        MPI_Request vote = votes[i];
+        int there = 0;
+        must(MPI_Request_get_status(vote, &there, MPI_STATUS_IGNORE));
+        if (!there)
+            missing += fmt::format("{}rank {} on {}", missing.empty() ? "" : ", ", i + 1, hosts_[i + 1]);
+    }
+    std::fprintf(stderr, "iwalk-server: not ready within %d s: %s\n", timeout_, missing.c_str());
+    MPI_Abort(world_, EXIT_FAILURE);
+    std::_Exit(EXIT_FAILURE);
+}
 
 std::vector<std::string> MpiSync::gatherText(const std::string& mine) {
     constexpr int kSlot = kMaxText + 1;
@@ -156,6 +245,7 @@ void MpiSync::renumber(int rank) {
     world_ = renumbered;
     must(MPI_Comm_rank(world_, &rank_));
     CHECK_OP(rank_, ==, rank);
+    hosts_ = gatherText(hostName());
 }
 
 void MpiSync::askToStop() {
@@ -246,12 +336,13 @@ void MpiSync::drain() {
 
 }  // namespace
 
-Result<std::unique_ptr<Sync>> startMpi(int& argc, char**& argv) {
+Result<std::unique_ptr<Sync>> startMpi(int& argc, char**& argv, int timeout) {
+    const StartWatch watch(timeout);
     int provided = MPI_THREAD_SINGLE;
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS ||
         provided < MPI_THREAD_FUNNELED)
         return fail("MPI does not start with threads: iwalk-server needs Open MPI (Debian: openmpi-bin)");
-    return std::unique_ptr<Sync>(std::make_unique<MpiSync>());
+    return std::unique_ptr<Sync>(std::make_unique<MpiSync>(timeout));
 }
 
 }  // namespace iwalk

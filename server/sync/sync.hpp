@@ -27,8 +27,11 @@ class Sync {
     // Called while a collective call waits; may call sendToRank0() and poll().
     virtual void setIdleWork(std::function<void()> work) = 0;
 
-    // True when every rank says true.
+    // True when every rank says true. When one says nothing for as long as startMpi() was told, rank 0 names
+    // it and ends all.
     virtual bool agree(bool mine) = 0;
+    // The host of each rank, on every rank.
+    virtual const std::vector<std::string>& hosts() const = 0;
     // Every rank's text (its first kMaxText bytes), by rank, on every rank.
     virtual std::vector<std::string> gatherText(const std::string& mine) = 0;
     // Gives each rank another number, from 0 to size() - 1 and each once; rank() says so from then on.
@@ -51,7 +54,8 @@ class Sync {
     virtual std::vector<protocol::TileImage> poll() = 0;
 };
 
-// Initialises MPI (Open MPI) for one drawing thread; finalises it when destroyed. Only once in a process.
-Result<std::unique_ptr<Sync>> startMpi(int& argc, char**& argv);
+// Initialises MPI (Open MPI) for one drawing thread; finalises it when destroyed. Only once in a process. A
+// rank that is here when others have not even started within `timeout` (s) says so and ends, and all with it.
+Result<std::unique_ptr<Sync>> startMpi(int& argc, char**& argv, int timeout);
 
 }  // namespace iwalk

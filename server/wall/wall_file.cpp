@@ -179,9 +179,10 @@ Result<Screen> placeScreen(const TomlTable& keys, const glm::dvec3& eye) {
         return fail("{}: the screen's corners make no right angle", keys.place("top_left"));
     const double distance = -glm::dot(glm::normalize(glm::cross(right, up)), screen.topLeft);
     if (distance < kNearestScreen)
-        return fail(
-            "{}: the eye does not stand before the screen, but {:.3g} m {} it: are left and right exchanged?",
-            keys.place("top_left"), std::abs(distance), distance < 0 ? "behind" : "before");
+        return fail("{}: the eye stands {}: are the screen's left and right exchanged?",
+                    keys.place("top_left"),
+                    distance < 0 ? fmt::format("{:.3g} m behind the screen", -distance)
+                                 : fmt::format("nearer to the screen's plane than {} m", kNearestScreen));
     return screen;
 }
 

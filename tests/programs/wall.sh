@@ -106,6 +106,17 @@ fly after one.json || complain "a wall that was started again does not take its 
 stop_wall
 nothing_runs
 
+# Nobody waits for ever: a server that hangs at the start is named, and so are all but one that has not even started.
+mkdir hanging
+mkfifo hanging/dataset.json
+server() { echo "$bin/iwalk-server --wall wall.toml --listen 127.0.0.1:0 --dataset $1 --startup-timeout $2"; }
+refuses "not ready within 15 s: rank 3 on $(hostname)" "${launch[@]}" 3 $(server dataset 15) : -np 1 $(server hanging 15)
+status=0
+"${launch[@]}" 3 $(server dataset 3) : -np 1 sleep 60 >/dev/null 2>late || status=$?
+[ "$status" = 1 ] || complain "servers that wait for another to start end with exit code $status"
+grep -q "rank [012] of 4 on $(hostname) is here" late || complain "nobody says that a server has not started: $(cat late)"
+if grep -q 'rank 3 of 4' late; then complain "a program that is no server speaks"; fi
+
 # A page with a flipped byte: the wall draws on without it and says so.
 cp -r dataset flipped
 flip "$(ls flipped/pages-*.bin)" 1500

@@ -161,7 +161,7 @@ TEST(Wall, ErrorsOfFreeScreensNameLineAndColumn) {
     EXPECT_THAT(said("eye = [0, 1, 1]", ""), HasSubstr("wall.toml:1:1: [wall] has no 'eye'"));
     EXPECT_THAT(said("[0, 1, 1]", "[0, 1]"), HasSubstr("wall.toml:2:7: 'eye' wants 3 numbers"));
     EXPECT_THAT(said("[0, 1, 1]", "[0, 1, inf]"), HasSubstr("wall.toml:2:14: 'eye' wants numbers from"));
-    EXPECT_THAT(said("[0, 1, 1]", "[0, 1, -2]"), HasSubstr("wall.toml:5:12: the eye does not stand before"));
+    EXPECT_THAT(said("[0, 1, 1]", "[0, 1, -2]"), HasSubstr("wall.toml:5:12: the eye stands 1 m behind"));
     EXPECT_THAT(said("[-2, 2, -1]", "[2, 2, -1]"), HasSubstr("wall.toml:5:12: the screen's corners lie"));
     EXPECT_THAT(said("[-2, 0, -1]", "[-1.9, 0, -1]"), HasSubstr("wall.toml:5:12: the screen's corners make"));
     EXPECT_THAT(said("name = \"front\"", ""), HasSubstr("wall.toml:3:1: [[screen]] has no 'name'"));
