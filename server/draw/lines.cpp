@@ -12,6 +12,7 @@ namespace {
 struct End {
     float place[3];
     std::uint32_t color;
+    float behind;
 };
 
 }  // namespace
@@ -29,7 +30,8 @@ Result<void> Lines::prepare() {
     glVertexArrayVertexBuffer(array_, 0, buffer_, 0, sizeof(End));
     glVertexArrayAttribFormat(array_, 0, 3, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribFormat(array_, 1, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(End, color));
-    for (const GLuint attribute : {0u, 1u}) {
+    glVertexArrayAttribFormat(array_, 2, 1, GL_FLOAT, GL_FALSE, offsetof(End, behind));
+    for (const GLuint attribute : {0u, 1u, 2u}) {
         glVertexArrayAttribBinding(array_, attribute, 0);
         glEnableVertexArrayAttrib(array_, attribute);
     }
@@ -45,7 +47,8 @@ void Lines::draw(std::span<const Line> lines) const {
     for (const Line& line : lines)
         for (const glm::dvec3& end : {line.from, line.to})
             ends.push_back({{static_cast<float>(end.x), static_cast<float>(end.y), static_cast<float>(end.z)},
-                            line.color});
+                            line.color,
+                            line.behind});
     glNamedBufferData(buffer_, static_cast<GLsizeiptr>(ends.size() * sizeof(End)), ends.data(),
                       GL_STREAM_DRAW);
     glBindVertexArray(array_);

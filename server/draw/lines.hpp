@@ -12,9 +12,10 @@ namespace iwalk {
 struct Line {
     glm::dvec3 from, to;
     std::uint32_t color;
+    float behind = 0.2f;  // opacity where a surface is before it
 };
 
-// Draws lines over a shaded picture: faint where a surface is before them.
+// Draws lines over a shaded picture.
 class Lines {
   public:
     Lines() = default;

@@ -92,21 +92,25 @@ layout(location = 1) uniform float near;
 layout(location = 2) uniform vec3 window;
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec4 color;
+layout(location = 2) in float behind;
 flat out vec4 lineColor;
+flat out float lineBehind;
 void main() {
     vec3 q = toPixels * place;
     gl_Position = vec4((q.xy - q.z * window.xy) / window.z, near, q.z);
     lineColor = color;
+    lineBehind = behind;
 }
 )";
 const char* const kLineFragment = R"(
 layout(location = 10) uniform ivec2 inBlock;
 layout(binding = 1) uniform sampler2D depths;
 flat in vec4 lineColor;
+flat in float lineBehind;
 layout(location = 0) out vec4 color;
 void main() {
     bool behind = gl_FragCoord.z < texelFetch(depths, ivec2(gl_FragCoord.xy) + inBlock, 0).r;
-    color = vec4(lineColor.rgb, lineColor.a * (behind ? 0.2 : 1.0));
+    color = vec4(lineColor.rgb, behind ? lineBehind : 1.0);
 }
 )";
 

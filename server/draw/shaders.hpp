@@ -60,7 +60,7 @@ enum ImageBinding : std::uint32_t { kCountsBinding = 0 };  // how many triangles
 Result<void> compileVisibilityPrograms(std::array<std::uint32_t, 2>& programs, bool counts);
 Result<std::uint32_t> compileRestProgram();  // begins the visibility buffer's second layer
 Result<std::uint32_t> compileBoxProgram();   // a rectangle at one depth, no colour
-Result<std::uint32_t> compileLineProgram();  // attributes: a place from the eye, a colour
+Result<std::uint32_t> compileLineProgram();  // attributes as in draw/lines.cpp
 Result<std::uint32_t> compileShadingProgram(std::uint32_t variant);
 
 }  // namespace iwalk

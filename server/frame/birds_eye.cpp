@@ -43,8 +43,8 @@ void addFrustum(const TileView& view, const LatticeEye& from, double depth, std:
         return eye + depth * (view.projection.toDirection * glm::dvec3(x, y, 1));
     };
     for (unsigned i = 0; i < 4; ++i) {
-        lines.push_back({eye, corner(i), kFrustum});
-        lines.push_back({corner(i), corner((i + 1) % 4), kFrustum});
+        lines.push_back({eye, corner(i), kFrustum, 0.8f});
+        lines.push_back({corner(i), corner((i + 1) % 4), kFrustum, 0.8f});
     }
 }
 
@@ -115,13 +115,16 @@ std::vector<Line> BirdsEye::boxes(const TileView& view, const LatticeEye& from, 
     std::map<std::uint32_t, bool> read;  // by page that was drawn
     for (const PageDrawing::Drawn& d : drawn) read[d.page] |= d.fetched;
     const Frustum frustum = frustumOf(view.projection, view.tile, 1, view.near);
-    std::vector<Line> lines;
+    std::vector<Line> leftOut, lines;
     for (const std::uint32_t page : pagesOf(visibility_.visible(cut, frustum, view.eye))) {
         const auto found = read.find(page);
-        const std::uint32_t color = found == read.end() ? kLeftOut : found->second ? kRead : kDrawn;
-        addBox(from, visibility_.pageBox(page), color, lines);
+        if (found == read.end())
+            addBox(from, visibility_.pageBox(page), kLeftOut, leftOut);
+        else
+            addBox(from, visibility_.pageBox(page), found->second ? kRead : kDrawn, lines);
     }
-    return lines;
+    leftOut.insert(leftOut.end(), lines.begin(), lines.end());  // what is drawn comes over what is not
+    return leftOut;
 }
 
 }  // namespace iwalk

@@ -17,7 +17,7 @@ namespace iwalk {
 struct VisibleRanges {
     std::uint32_t page = 0, firstRange = 0, rangeCount = 0;
     std::uint32_t rank = 0;  // of the page in the order of all that the frustum has; decides equal depths
-    std::uint8_t turn = 0;   // 0 to kTurns - 1: when mode plp has chosen them, by the budget spent before
+    std::uint8_t turn = 0;   // 0 to kTurns - 1: when mode plp has chosen them
 };
 constexpr unsigned kTurns = 16;
 

@@ -172,10 +172,11 @@ std::vector<VisibleRanges> PlpVisibility::choose(const std::vector<Candidate>& c
         left -= range.triangles;
         taken.push_back({range.page, range.range, 1});
     }
-    const std::uint64_t all = std::max<std::uint64_t>(1, budget_ - left);
+    // By the square root of what was spent before, since the first ones have most of the pixels.
+    const double all = std::max(1.0, static_cast<double>(budget_ - left));
     for (std::size_t i = 0; i < taken.size(); ++i)
-        taken[i].turn =
-            static_cast<std::uint8_t>(std::min<std::uint64_t>(kTurns - 1, kTurns * spent[i] / all));
+        taken[i].turn = static_cast<std::uint8_t>(
+            std::min(kTurns - 1.0, kTurns * std::sqrt(static_cast<double>(spent[i]) / all)));
 
     std::vector<VisibleRanges> visible = joined(std::move(taken));
     frustum_.sortFrontToBack(visible, sight.eye);
