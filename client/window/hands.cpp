@@ -116,7 +116,6 @@ void Hands::letter(int key) {
 void Hands::button(int button, bool down) {
     drag_ = Drag::none;
     if (!down) return;
-    glfwGetCursorPos(window_, &x_, &y_);
     if (button == GLFW_MOUSE_BUTTON_LEFT) drag_ = Drag::look;
     if (button == GLFW_MOUSE_BUTTON_RIGHT) {
         drag_ = Drag::orbit;

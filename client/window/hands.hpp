@@ -31,7 +31,7 @@ class Hands {
     Flight& flight_;
     Overlay& overlay_;
     Drag drag_ = Drag::none;
-    double x_ = 0, y_ = 0;  // of the mouse, window coordinates
+    double x_ = 0, y_ = 0;  // of the mouse as events tell it, which may be late; window coordinates
 };
 
 }  // namespace iwalk::client
