@@ -36,7 +36,8 @@ void addBox(const LatticeEye& from, const LatticeBox& box, std::uint32_t color, 
 
 // Its edges, as long as `depth` along the view.
 void addFrustum(const TileView& view, const LatticeEye& from, double depth, std::vector<Line>& lines) {
-    const glm::dvec3 eye = from.to(view.eye.cell) + view.eye.fraction;
+    const glm::dvec3 eye =
+        glm::dvec3(view.eye.cell) - glm::dvec3(from.cell) + view.eye.fraction - from.fraction;
     const auto corner = [&](unsigned i) {
         const double x = view.tile.x + (i == 1 || i == 2 ? view.tile.width : 0);
         const double y = view.tile.y + (i >= 2 ? view.tile.height : 0);
@@ -79,8 +80,7 @@ void BirdsEye::draw(const TileView& view, const glm::dvec3& up, const Cut& cut,
 // The whole model, and the eye where it is not too far from it, on the whole tile.
 TileView BirdsEye::above(const TileView& view, const glm::dvec3& up) const {
     const LatticeBox model = Hierarchy::box(hierarchy_.nodes[0]);
-    glm::dvec3 low = view.eye.to(model.min),
-               high = view.eye.to(model.max);  // from the tile's eye
+    glm::dvec3 low = view.eye.to(model.min), high = view.eye.to(model.max);  // from the tile's eye
     const double size = glm::distance(low, high);
     if (glm::length(low + high) / 2 < 1.5 * size) low = glm::min(low, 0.0), high = glm::max(high, 0.0);
 
