@@ -151,16 +151,16 @@ Result<void> Session::serve(ServerLink& link) {
 std::vector<Message> Session::due() {
     const std::lock_guard lock(mutex_);
     std::vector<Message> messages;
-    if (std::exchange(helloDue_, false)) messages.push_back(hello_);
+    if (std::exchange(helloDue_, false)) messages.emplace_back(hello_);
     if (!state_.control) return messages;
     if (std::exchange(settingsDue_, false)) {
         protocol::ChangeSettings changes;
         for (const auto& [name, value] : settings_) changes.settings.push_back({name, value});
-        messages.push_back(std::move(changes));
+        messages.emplace_back(std::move(changes));
     }
     if (cameraDue_ && meter_.unanswered() < kMostUnanswered) {
         cameraDue_ = false;
-        messages.push_back(protocol::CameraRequest{++sequence_, 0, *camera_});
+        messages.emplace_back(protocol::CameraRequest{++sequence_, 0, *camera_});
         meter_.sent(sequence_, Clock::now());
     }
     return messages;
