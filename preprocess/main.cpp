@@ -1,4 +1,6 @@
 #include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -221,6 +223,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
+        // Standard output is for results.
+        spdlog::set_default_logger(spdlog::stderr_logger_mt("iwalk-preprocess"));
+        spdlog::set_pattern("%l: %v");
         return run(argc, argv);
     } catch (const std::exception& exception) {  // out of memory, for instance
         fmt::print(stderr, "iwalk-preprocess: {}\n", exception.what());

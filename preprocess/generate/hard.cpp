@@ -50,7 +50,7 @@ Result<void> flat(const CellGrid& grid, std::uint64_t seed, PlyOutput& output, P
     RETURN_IF_ERROR(writeGridVertices(grid, output, progress, [&](std::uint32_t column, std::uint32_t row) {
         Random random(seedOf(seed, column, row));
         const bool inside = column > 0 && row > 0 && column < grid.columns && row < grid.rows;
-        const double dx = inside ? random.between(-0.4, 0.4) : 0, dy = inside ? random.between(-0.4, 0.4) : 0;
+        const double dx = inside ? random.between(-0.2, 0.2) : 0, dy = inside ? random.between(-0.2, 0.2) : 0;
         output.vertex(glm::vec3(static_cast<float>(kSide * (column + dx) / grid.columns),
                                 static_cast<float>(kSide * (row + dy) / grid.rows), 1));
     }));

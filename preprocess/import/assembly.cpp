@@ -105,6 +105,7 @@ class AssemblyImporter : public Importer {
         output.flush();
         summary.vertices = output.count();
         summary.bounds = output.bounds();
+        if (unknownBound_) summary.triangleBound = 0;
         if (!(summary.precision > 0)) summary.precision = textPrecision(summary.bounds);
         summary_ = summary;
         return summary;
@@ -132,8 +133,9 @@ class AssemblyImporter : public Importer {
     }
 
   private:
-    static void add(const ImportSummary& part, const std::vector<Placement>& placements, ImportSummary& all) {
+    void add(const ImportSummary& part, const std::vector<Placement>& placements, ImportSummary& all) {
         all.triangleBound += part.triangleBound * placements.size();
+        unknownBound_ = unknownBound_ || (part.triangleBound == 0 && part.vertices > 0);
         all.colors = all.colors || part.colors;
         all.normals = all.normals || part.normals;
         for (const Placement& placement : placements) {
@@ -160,6 +162,7 @@ class AssemblyImporter : public Importer {
     ImporterList files_;
     ImportSummary summary_;
     std::vector<ImportSummary> parts_;  // by file
+    bool unknownBound_ = false;
 };
 
 }  // namespace

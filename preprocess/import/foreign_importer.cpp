@@ -14,9 +14,10 @@
 namespace iwalk {
 namespace {
 
-constexpr unsigned kLeastSeconds = 8;               // of a processor
-constexpr std::uint64_t kBytesASecond = 1'000'000;  // of a file: slower is given up
-constexpr unsigned kClockFactor = 4;                // where others have most of the processor
+constexpr std::uint64_t kLeastMemoryBytes = std::uint64_t{128} << 20;  // the libraries want some
+constexpr unsigned kLeastSeconds = 8;                                  // of a processor
+constexpr std::uint64_t kBytesASecond = 1'000'000;                     // of a file: slower is given up
+constexpr unsigned kClockFactor = 4;  // where others have most of the processor
 // A triangle takes 120 bytes, in files 4 at least, compressed ones apart: with instances, more.
 constexpr std::uint64_t kExpansion = 256, kLeastOutput = std::uint64_t{256} << 20;
 
@@ -155,7 +156,7 @@ Result<std::unique_ptr<Importer>> openForeign(const std::string& path, ForeignKi
     const bool heights = kind == ForeignKind::heights;
     ASSIGN_OR_RETURN(std::unique_ptr<SpillFile> output, SpillFile::create(limits.spillDirectory));
     ImportProcessLimits process;
-    process.memoryBytes = limits.memoryBytes;
+    process.memoryBytes = std::max(limits.memoryBytes, kLeastMemoryBytes);
     process.fileBytes = std::max(kLeastOutput, fileBytes * kExpansion);
     process.cpuSeconds =
         kLeastSeconds + static_cast<unsigned>(std::min<std::uint64_t>(fileBytes / kBytesASecond, 100'000));

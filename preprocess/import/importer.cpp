@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 5> kOwn{".obj", ".ply", ".stl", ".vrml", ".wrl"};
 constexpr std::array<std::string_view, 8> kForeign{".3ds", ".3mf",  ".dae", ".fbx",
                                                    ".glb", ".gltf", ".off", ".x"};
-constexpr std::array<std::string_view, 6> kHeightMaps{".exr", ".hdr", ".pgm", ".png", ".tif", ".tiff"};
+constexpr std::array<std::string_view, 5> kHeightMaps{".exr", ".hdr", ".png", ".tif", ".tiff"};
 
 bool isOneOf(std::string_view extension, std::span<const std::string_view> list) {
     return std::ranges::find(list, extension) != list.end();

@@ -91,7 +91,11 @@ TEST_F(ForeignTest, limitsOfTheProgram) {
         return done ? std::string() : done.error().message;
     };
     EXPECT_EQ(run({kMemory, 1 << 20, 10, 100}), "");
-    EXPECT_THAT(run({1, 1 << 20, 10, 100}), AnyOf(HasSubstr("memory"), HasSubstr("crashed")));
+    std::string large = "OFF\n200000 1 0\n";
+    for (int i = 0; i < 200'000; ++i) large += "0 0 0\n";
+    directory_.write("a.off", large + "3 0 1 2\n");
+    EXPECT_THAT(run({1 << 20, 1 << 20, 10, 100}), AnyOf(HasSubstr("memory"), HasSubstr("crashed")));
+    directory_.write("a.off", kOff);
     EXPECT_THAT(run({kMemory, 100, 10, 100}), HasSubstr("too many for a file of its size"));
     EXPECT_THAT(run({kMemory, 1 << 20, 10, 0}), HasSubstr("took longer than 0 s"));
 }
@@ -127,18 +131,40 @@ TEST_F(ForeignTest, whatTheProgramWritesIsChecked) {
     }
 }
 
-// Samples of 16 bits, the first row the farthest.
-std::string pgm(int columns, int rows, const std::vector<int>& samples) {
-    std::string out = fmt::format("P5\n{} {}\n65535\n", columns, rows);
-    for (const int sample : samples) out += {static_cast<char>(sample >> 8), static_cast<char>(sample & 255)};
+void append(std::string& out, std::initializer_list<std::uint32_t> numbers, std::size_t bytes) {
+    for (const std::uint32_t number : numbers) out.append(reinterpret_cast<const char*>(&number), bytes);
+}
+
+// A TIFF file of samples of 16 bits, the first row the farthest.
+std::string tiff(std::uint32_t columns, std::uint32_t rows, const std::vector<std::uint32_t>& samples) {
+    static constexpr std::uint32_t kShort = 3, kLong = 4, kEntries = 9, kData = 8 + 2 + 12 * kEntries + 4;
+    std::string out = "II";
+    append(out, {42}, 2);
+    append(out, {8}, 4);
+    append(out, {kEntries}, 2);
+    const auto entry = [&](std::uint32_t tag, std::uint32_t type, std::uint32_t value) {
+        append(out, {tag, type}, 2);
+        append(out, {1, value}, 4);
+    };
+    entry(256, kLong, columns);
+    entry(257, kLong, rows);
+    entry(258, kShort, 16);    // bits
+    entry(259, kShort, 1);     // not compressed
+    entry(262, kShort, 1);     // 0 is black
+    entry(273, kLong, kData);  // where they are
+    entry(277, kShort, 1);     // channels
+    entry(278, kLong, rows);   // in one piece
+    entry(279, kLong, 2 * columns * rows);
+    append(out, {0}, 4);
+    for (const std::uint32_t sample : samples) append(out, {sample}, 2);
     return out;
 }
 
 TEST_F(ForeignTest, heightMaps) {
-    directory_.write("a.pgm", pgm(3, 2, {100, 200, 65535, 0, 1, 2}));
+    directory_.write("a.tif", tiff(3, 2, {100, 200, 65535, 0, 1, 2}));
     ImportChoices choices;
     choices.spacing = 10, choices.heightScale = 0.5;
-    const auto read = importHeights("a.pgm", choices);
+    const auto read = importHeights("a.tif", choices);
     ASSERT_TRUE(read.ok()) << read.error().message;
     EXPECT_EQ(read->triangles.size(), 4u);
     EXPECT_EQ(read->summary.bounds.min, glm::dvec3(0, 0, 0));
@@ -150,19 +176,19 @@ TEST_F(ForeignTest, heightMaps) {
 }
 
 TEST_F(ForeignTest, heightMapsWithHoles) {
-    directory_.write("a.pgm", pgm(3, 2, {5, 5, 9, 5, 5, 5}));
+    directory_.write("a.tif", tiff(3, 2, {5, 5, 9, 5, 5, 5}));
     ImportChoices choices;
     choices.noData = 9;
-    EXPECT_EQ(importHeights("a.pgm", choices)->triangles.size(), 3u);
-    directory_.write("a.pgm", pgm(3, 2, {5, 9, 5, 5, 9, 5}));
-    EXPECT_EQ(importHeights("a.pgm", choices)->triangles.size(), 0u);
+    EXPECT_EQ(importHeights("a.tif", choices)->triangles.size(), 3u);
+    directory_.write("a.tif", tiff(3, 2, {5, 9, 5, 5, 9, 5}));
+    EXPECT_EQ(importHeights("a.tif", choices)->triangles.size(), 0u);
 }
 
 TEST_F(ForeignTest, badHeightMaps) {
-    const std::string whole = pgm(30, 30, std::vector<int>(900, 7));
-    EXPECT_THAT(errorOf("a.pgm", whole.substr(0, 400)), HasSubstr("cut short"));
-    EXPECT_THAT(errorOf("a.pgm", pgm(1, 3, {1, 2, 3})), HasSubstr("2 x 2 to"));
-    EXPECT_NE(errorOf("a.pgm", "P5\n2000000000 2000000000\n65535\n"), "");
+    const std::string whole = tiff(30, 30, std::vector<std::uint32_t>(900, 7));
+    EXPECT_THAT(errorOf("a.tif", whole.substr(0, 400)), HasSubstr("cut short"));
+    EXPECT_THAT(errorOf("a.tif", tiff(1, 3, {1, 2, 3})), HasSubstr("2 x 2 to"));
+    EXPECT_NE(errorOf("a.tif", tiff(2'000'000'000, 2'000'000'000, {1})), "");
 }
 
 }  // namespace

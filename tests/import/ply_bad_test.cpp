@@ -145,11 +145,11 @@ TEST_F(BadPlyTest, whatIsNoFile) {
     EXPECT_EQ(import("nowhere.ply").ok(), false);
     const auto directory = openImporter(directory_.path(""), {});
     ASSERT_FALSE(directory.ok());
-    EXPECT_EQ(directory.error().message, directory_.path("") + ": is a directory: give a PLY or OBJ file");
+    EXPECT_EQ(directory.error().message, directory_.path("") + ": is a directory: give a model file");
     const auto device = openImporter("/dev/zero", {});
     ASSERT_FALSE(device.ok());
-    EXPECT_EQ(device.error().message, "/dev/zero: is not a regular file: give a PLY or OBJ file");
-    EXPECT_EQ(errorOf("model.stl", "solid"), "unknown kind of model: PLY (.ply) and OBJ (.obj) can be read");
+    EXPECT_EQ(device.error().message, "/dev/zero: is not a regular file: give a model file");
+    EXPECT_EQ(errorOf("model.xyz", "solid"), "unknown kind of model: there is no reader for '.xyz' files");
 }
 
 // Every part of a file is an error, except that a text may lack its last line end.

@@ -52,14 +52,17 @@ refuses missing.ply "$preprocess" measure missing.ply
 # A height map with a hole, of 16 bits.
 python3 -c '
 import struct, sys
-samples = [[100 * x + y for x in range(30)] for y in range(20)]
-samples[7][9] = 65535
-sys.stdout.buffer.write(b"P5\n30 20\n65535\n" + b"".join(struct.pack(">30H", *row) for row in samples))' >heights.pgm
-build heights.pgm --spacing 5 --height-scale 0.1 --no-data 65535 -o heights
+def entry(tag, kind, value): return struct.pack("<HHII", tag, kind, 1, value)
+samples = [100 * x + y for y in range(20) for x in range(30)]
+samples[7 * 30 + 9] = 65535
+entries = [(256, 4, 30), (257, 4, 20), (258, 3, 16), (259, 3, 1), (262, 3, 1), (273, 4, 122), (277, 3, 1), (278, 4, 20), (279, 4, 1200)]
+sys.stdout.buffer.write(b"II*\0" + struct.pack("<IH", 8, 9) + b"".join(entry(*e) for e in entries) + bytes(4)
+                        + struct.pack("<600H", *samples))' >heights.tif
+build heights.tif --spacing 5 --height-scale 0.1 --no-data 65535 -o heights
 same "a height map's triangles" "$(of heights triangles)" $((2 * 29 * 19 - 4))
 same "its bounds" "$(of heights bounds max)" "[145.0, 95.0, 291.8999938964844]"
-truncate -s 500 heights.pgm
-refuses heights.pgm "$preprocess" build heights.pgm -o none
+truncate -s 500 heights.tif
+refuses heights.tif "$preprocess" build heights.tif -o none
 [ ! -e none ] || complain "a failed build left its directory"
 
 # What assimp's authors test with: everything imports, or ends with one line, in 10 seconds and 1 GB.

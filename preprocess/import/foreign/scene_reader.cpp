@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <new>
 
 #include "preprocess/import/placement.hpp"
 #include "preprocess/import/text.hpp"
@@ -187,7 +188,11 @@ Result<void> exportScene(const std::string& path, ExchangeWriter& out) {
     if (extension.empty() || !importer.IsExtensionSupported(extension))
         return fail("unknown kind of model: there is no reader for {} files", quote(extension));
     const aiScene* const scene = importer.ReadFile(path, aiProcess_Triangulate);
-    if (scene == nullptr) return fail("cannot be read: {}", firstLine(importer.GetErrorString()));
+    if (scene == nullptr) {
+        const std::string said = firstLine(importer.GetErrorString());
+        if (said.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+        return fail("cannot be read: {}", said);
+    }
     if (scene->mNumMeshes == 0) return fail("has no meshes");
     return SceneExport(*scene, extension == ".gltf" || extension == ".glb", out).run();
 }

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/file.hpp"
+#include "preprocess/import/importer.hpp"
+
+// Each target is a program of plain_main.cpp, and can be one of libFuzzer's. It has these two functions.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+namespace iwalk {
+// Inputs to begin with, good ones.
+std::vector<std::string> fuzzSeeds();
+
+class MemoryFile : public RandomAccessFile {
+  public:
+    MemoryFile(const std::uint8_t* data, std::size_t size) : bytes_(std::as_bytes(std::span(data, size))) {}
+    Result<void> readAt(std::uint64_t offset, std::span<std::byte> out) const override {
+        if (offset > bytes_.size() || out.size() > bytes_.size() - offset)
+            return fail("memory: ends at {}", offset);
+        if (!out.empty()) std::memcpy(out.data(), bytes_.data() + offset, out.size());
+        return {};
+    }
+    std::uint64_t size() const override { return bytes_.size(); }
+
+  private:
+    std::span<const std::byte> bytes_;
+};
+
+// Reads all there is, twice, and checks what an importer promises.
+inline void readAll(const Result<std::unique_ptr<Importer>>& opened) {
+    if (!opened) {
+        CHECK(opened.error().message.find('\n') == std::string::npos);
+        return;
+    }
+    Importer& importer = **opened;
+    const auto summary = importer.scan([](std::span<const glm::dvec3>) {}, {});
+    if (!summary) return;
+    std::uint64_t triangles = 0;
+    const auto counts = importer.triangles(
+        [&](std::span<const Triangle> batch) {
+            for (const Triangle& triangle : batch) {
+                for (const Corner& corner : triangle) {
+                    const glm::dvec3& p = corner.position;
+                    CHECK(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+                    CHECK(summary->normals || corner.normal == glm::vec3(0));
+                }
+            }
+            triangles += batch.size();
+            return Result<void>();
+        },
+        {});
+    if (counts) {
+        CHECK_OP(counts->triangles, ==, triangles);
+        CHECK(summary->triangleBound == 0 || counts->triangles <= summary->triangleBound);
+    }
+}
+
+// Where what does not fit in memory goes; the limits are the least there may be.
+inline ImportLimits fuzzLimits() {
+    return {std::uint64_t{16} << 20, "/tmp"};
+}
+
+}  // namespace iwalk
