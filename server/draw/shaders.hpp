@@ -54,9 +54,8 @@ static_assert(sizeof(ShadedPage) == 64);
 enum StorageBinding : std::uint32_t { kWordsBinding = 0, kPagesBinding = 1, kTintsBinding = 2 };
 enum ImageBinding : std::uint32_t { kCountsBinding = 0 };  // how many triangles cover each pixel of a block
 
-// Compile and link; the error holds the GL's log. The first pass comes for narrow and for wide pages, and may
-// count triangles on the way.
-// `programs` are replaced.
+// Compile and link; the error holds the GL's log. The first pass comes for narrow and for wide pages, which
+// replace `programs`, and may count triangles on the way.
 Result<void> compileVisibilityPrograms(std::array<std::uint32_t, 2>& programs, bool counts);
 Result<std::uint32_t> compileRestProgram();  // begins the visibility buffer's second layer
 Result<std::uint32_t> compileBoxProgram();   // a rectangle at one depth, no colour

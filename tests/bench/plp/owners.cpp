@@ -67,8 +67,8 @@ OwnerRenders::~OwnerRenders() {
 Result<std::unique_ptr<OwnerRenders>> OwnerRenders::create(const Dataset& dataset, const Cut& cut,
                                                            const CutPages& pages, int width, int height) {
     std::unique_ptr<OwnerRenders> made(new OwnerRenders(dataset, cut, pages, width, height));
-    for (const int wide : {0, 1}) {
-        ASSIGN_OR_RETURN(made->programs_[wide], compileVisibilityProgram(wide == 1, false));
+    RETURN_IF_ERROR(compileVisibilityPrograms(made->programs_, false));
+    for (const std::size_t wide : {std::size_t{0}, std::size_t{1}}) {
         GLuint& array = made->arrays_[wide];
         glCreateVertexArrays(1, &array);
         glEnableVertexArrayAttrib(array, 0);

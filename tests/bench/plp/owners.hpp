@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -46,7 +47,7 @@ class OwnerRenders {
     const CutPages& pages_;
     const int width_, height_;                  // px
     std::vector<std::uint32_t> firstTriangle_;  // by page: the number of its first triangle, from 1
-    std::uint32_t programs_[2] = {}, arrays_[2] = {};
+    std::array<std::uint32_t, 2> programs_{}, arrays_{};
     std::uint32_t framebuffer_ = 0, ids_ = 0, depth_ = 0, used_ = 0;
     std::vector<std::uint32_t> buffers_;  // by page; 0: none yet
 };
