@@ -119,8 +119,8 @@ class Collapser {
         return left;
     }
 
-    // What the next candidates look at is fetched from memory while this one is: an eighth of a build's
-    // processor time.
+    // What the next candidates look at is fetched from memory while this one is: up to an eighth of a build's
+    // processor time, where memory is not what both threads wait for anyway.
     void bringNear(std::size_t i) const {
         const auto fanOf = [&](std::size_t ahead) {
             return i + ahead < candidates_.size() ? fans_.of(candidates_[i + ahead])
