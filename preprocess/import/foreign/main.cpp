@@ -1,6 +1,7 @@
 // What iwalk-preprocess starts for files that libraries read. It may crash: nobody depends on it but the
 // file.
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -40,6 +41,8 @@ void limit(int what, std::uint64_t value) {
 
 void setLimits(const Limits& limits) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // A heap for all threads: each of its own would take 64 MB of addresses, and the libraries have threads.
+    ::mallopt(M_ARENA_MAX, 1);
     std::signal(SIGXFSZ, SIG_IGN);  // writing fails instead
     limit(RLIMIT_AS, mappedBytes() + limits.memory);
     limit(RLIMIT_CPU, limits.seconds);
