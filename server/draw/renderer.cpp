@@ -43,7 +43,7 @@ class GlRenderer : public Renderer {
     void beginRest() override;
     void finish() override;
     void drawLines(std::span<const Line> lines) override;
-    void wait() override;
+    void wait() override { glFinish(); }
     glm::ivec2 readBlockDepths(std::vector<float>& depths) override;
     void readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
     glm::ivec2 bindBlock() override;
@@ -270,10 +270,6 @@ glm::ivec2 GlRenderer::bindBlock() {
     glViewport(part.x, part.y, part.width, part.height);
     used_ = 0;
     return {part.width, part.height};
-}
-
-void GlRenderer::wait() {
-    glFinish();
 }
 
 glm::ivec2 GlRenderer::readBlockDepths(std::vector<float>& depths) {
