@@ -41,7 +41,7 @@ start_servers() {
 eyes() { tr -d ' \n' <"$1" | grep -o '"eye":\[[^]]*\]' | uniq; }
 
 : >client
-Xvfb -displayfd 5 -screen 0 1280x800x24 -nolisten tcp 5>display >/dev/null 2>&1 &
+Xvfb -displayfd 5 -noreset -screen 0 1280x800x24 -nolisten tcp 5>display >/dev/null 2>&1 &
 xvfb=$!
 eventually "no display" test -s display
 export DISPLAY=:$(cat display)

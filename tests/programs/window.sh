@@ -10,7 +10,7 @@ cleanup() {
     for process in $wall $xvfb; do kill -TERM "$process" 2>/dev/null || true; done
     wait 2>/dev/null || true
 }
-Xvfb -displayfd 3 -br -nolisten tcp -screen 0 640x480x24 3>display 2>/dev/null &
+Xvfb -displayfd 3 -br -noreset -nolisten tcp -screen 0 640x480x24 3>display 2>/dev/null &
 xvfb=$!
 for _ in $(seq 200); do [ -s display ] && break; sleep 0.05; done
 DISPLAY=:$(cat display)
