@@ -1,6 +1,8 @@
 // iwalk-visibility-check: flies through a dataset with conservative visibility and without any, and says how
 // many pixels differ in any way.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
@@ -13,19 +15,53 @@ namespace {
 using namespace iwalk;
 
 struct Options {
-    std::string dataset, path, occlusion = "hzb", cache = "2G", level = "full", near = "0", up = "z";
-    int frames = 200, first = 0, width = 1024, height = 768, columns = 1, rows = 1;
+    std::string dataset, path, cache = "2G", level = "full", near = "0", up = "z";
+    std::vector<std::string> occlusions = {"hzb"};
+    std::vector<int> tiles = {1};
+    int frames = 200, first = 0, width = 1024, height = 768;
 };
 
-Result<Settings> settingsOf(const Options& options, const std::string& mode) {
+Result<Settings> settingsOf(const Options& options, const std::string& mode, const std::string& occlusion) {
     Settings settings;
     RETURN_IF_ERROR(setSetting(settings, "mode", mode));
-    RETURN_IF_ERROR(setSetting(settings, "occlusion", options.occlusion));
+    RETURN_IF_ERROR(setSetting(settings, "occlusion", occlusion));
     RETURN_IF_ERROR(setSetting(settings, "cache", options.cache));
     RETURN_IF_ERROR(setSetting(settings, "level", options.level));
     RETURN_IF_ERROR(setSetting(settings, "near", options.near));
     return settings;
 }
+
+// The servers of one wall with cplp, and what was seen of them.
+class Flight {
+  public:
+    Flight(const Dataset& dataset, const Options& options, int tiles, Settings settings,
+           const std::string& occlusion)
+        : name_(fmt::format("{0}x{0} tiles, {1}", tiles, occlusion)),
+          wall_(tools::wallOf(options.width, options.height, tiles, tiles)),
+          servers_(dataset, wall_, settings) {}
+
+    void compareFrame(std::size_t frame, const Camera& camera, const tools::Picture& all) {
+        const tools::Comparison comparison = compare(all, servers_.draw(camera), std::nullopt);
+        pixels_ += comparison.different;
+        frames_ += comparison.different > 0;
+        triangles_ += servers_.stats().triangles;
+        if (comparison.different == 0) return;
+        fmt::print("{}: frame {}: {} pixels differ, {} of them in colour\n", name_, frame,
+                   comparison.different, comparison.color.different);
+        std::fflush(stdout);
+    }
+    void report(std::uint64_t allTriangles) const {
+        fmt::print("{}: {} pixels differ in {} frames; triangles drawn {:.4f} of all\n", name_, pixels_,
+                   frames_, static_cast<double>(triangles_) / static_cast<double>(allTriangles));
+    }
+    bool exact() const { return pixels_ == 0; }
+
+  private:
+    const std::string name_;
+    const Wall wall_;
+    tools::WallServers servers_;
+    std::uint64_t frames_ = 0, pixels_ = 0, triangles_ = 0;
+};
 
 Result<std::vector<Camera>> pathOf(const Options& options, const Dataset& dataset) {
     if (!options.path.empty()) return loadCameraPath(options.path);
@@ -34,35 +70,33 @@ Result<std::vector<Camera>> pathOf(const Options& options, const Dataset& datase
 }
 
 Result<bool> check(const Options& options) {
-    ASSIGN_OR_RETURN(const Settings frustum, settingsOf(options, "frustum"));
-    ASSIGN_OR_RETURN(const Settings cplp, settingsOf(options, "cplp"));
+    ASSIGN_OR_RETURN(const Settings frustum, settingsOf(options, "frustum", "hzb"));
     ASSIGN_OR_RETURN(const Dataset dataset, openDataset(options.dataset));
     ASSIGN_OR_RETURN(const std::vector<Camera> path, pathOf(options, dataset));
     ASSIGN_OR_RETURN(const std::unique_ptr<GlContext> context, GlContext::createHeadless());
     const Wall whole = tools::wallOf(options.width, options.height, 1, 1);
-    const Wall tiles = tools::wallOf(options.width, options.height, options.columns, options.rows);
-    tools::WallServers all(dataset, whole, frustum), some(dataset, tiles, cplp);
-    std::uint64_t frames = 0, wrongFrames = 0, wrongPixels = 0, allTriangles = 0, someTriangles = 0;
+    tools::WallServers all(dataset, whole, frustum);
+    std::vector<std::unique_ptr<Flight>> flights;
+    for (const std::string& occlusion : options.occlusions)
+        for (const int tiles : options.tiles) {
+            ASSIGN_OR_RETURN(Settings settings, settingsOf(options, "cplp", occlusion));
+            settings.cacheBytes /= static_cast<std::uint64_t>(tiles * tiles);
+            flights.push_back(std::make_unique<Flight>(dataset, options, tiles, settings, occlusion));
+        }
+    std::uint64_t triangles = 0;
     for (std::size_t i = static_cast<std::size_t>(options.first); i < path.size(); ++i) {
-        const tools::Comparison comparison = compare(all.draw(path[i]), some.draw(path[i]), std::nullopt);
-        ++frames;
-        wrongPixels += comparison.different;
-        wrongFrames += comparison.different > 0;
-        allTriangles += all.stats().triangles;
-        someTriangles += some.stats().triangles;
-        if (comparison.different == 0) continue;
-        std::printf("frame %zu: %llu pixels differ, %llu of them in colour\n", i,
-                    static_cast<unsigned long long>(comparison.different),
-                    static_cast<unsigned long long>(comparison.color.different));
-        std::fflush(stdout);
+        const tools::Picture picture = all.draw(path[i]);
+        triangles += all.stats().triangles;
+        for (const std::unique_ptr<Flight>& flight : flights) flight->compareFrame(i, path[i], picture);
     }
-    std::printf(
-        "%llu frames of %dx%d px on %dx%d tiles: %llu pixels differ in %llu frames; triangles drawn %.4f of "
-        "all\n",
-        static_cast<unsigned long long>(frames), options.width, options.height, options.columns, options.rows,
-        static_cast<unsigned long long>(wrongPixels), static_cast<unsigned long long>(wrongFrames),
-        static_cast<double>(someTriangles) / static_cast<double>(allTriangles));
-    return wrongPixels == 0;
+    fmt::print("{} frames of {}x{} px\n", path.size() - static_cast<std::size_t>(options.first),
+               options.width, options.height);
+    bool exact = true;
+    for (const std::unique_ptr<Flight>& flight : flights) {
+        flight->report(triangles);
+        exact = exact && flight->exact();
+    }
+    return exact;
 }
 
 }  // namespace
@@ -79,10 +113,12 @@ int main(int argc, char** argv) {
     app.add_option("--up", options.up, "the model's axis that points up")->check(CLI::IsMember({"y", "z"}));
     app.add_option("--width", options.width, "px of the whole picture");
     app.add_option("--height", options.height, "px of the whole picture");
-    app.add_option("--columns", options.columns, "tiles side by side");
-    app.add_option("--rows", options.rows, "tiles on top of one another");
-    app.add_option("--occlusion", options.occlusion, "as iwalk-server's");
-    app.add_option("--cache", options.cache, "bytes for pages, as iwalk-server's");
+    app.add_option("--tiles", options.tiles, "walls of N x N tiles")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 64));
+    app.add_option("--occlusion", options.occlusions, "as iwalk-server's; several: each on every wall")
+        ->delimiter(',');
+    app.add_option("--cache", options.cache, "bytes for pages, which the tiles of a wall share");
     app.add_option("--level", options.level, "as iwalk-server's");
     app.add_option("--near", options.near, "as iwalk-server's");
     try {
