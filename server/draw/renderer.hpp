@@ -62,8 +62,8 @@ class Renderer {
     // frame.
     virtual void beginBlock(const Block& block) = 0;
     // `rank`: of the page in the block's order, from near to far: what is equally near is seen where it comes
-    // first. Pages must come in this order, up to beginRest() and again from there on. The result is the
-    // draw's number in the block.
+    // first, if pages come in this order, up to beginRest() and again from there on; else what is drawn first
+    // is seen. The result is the draw's number in the block.
     virtual std::uint32_t draw(const ResidentPage& page, const PageRecord& record, std::uint32_t rank,
                                std::span<const DrawnRange> ranges) = 0;
     // What is drawn from here on may come before what has been drawn. Once in a block at the most.

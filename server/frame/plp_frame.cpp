@@ -1,33 +1,42 @@
 #include "server/frame/plp_frame.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/frame/tile_counters.hpp"
 
 namespace iwalk {
 
-PlpFrame::PlpFrame(const Hierarchy& hierarchy, const FrustumVisibility& frustum, const Settings& settings)
-    : plp_(hierarchy, frustum, settings.plpBudget, settings.plpRays / 100) {}
+PlpFrame::PlpFrame(const Hierarchy& hierarchy, const FrustumVisibility& frustum, PageCache& cache,
+                   Renderer& renderer, PageDrawing& pages, const Settings& settings)
+    : budget_(settings.plpBudget),
+      plp_(hierarchy, settings.plpBudget, settings.plpRays / 100),
+      frustum_(frustum),
+      cache_(cache),
+      renderer_(renderer),
+      pages_(pages) {}
 
-void PlpFrame::choose(const Cut& cut, const TileSight& sight, PageCache& cache, protocol::TileStats& stats) {
+void PlpFrame::begin(const Cut& cut, const TileSight& sight, std::span<const BlockView> blocks,
+                     protocol::TileStats& stats) {
     Stopwatch watch;
     const std::vector<PlpVisibility::Candidate> candidates = plp_.candidates(cut, sight);
     const std::vector<std::uint32_t> pages = plp_.pagesOf(candidates);
     stats.visibilityMs += watch.lap();
 
-    readTables(pages, cache, stats);
+    readTables(pages, stats);
     watch.lap();
 
     const auto tableOf = [&](std::uint32_t page) {
         const auto found = tables_.find(page);
         return found == tables_.end() ? nullptr : &found->second;
     };
-    chosen_ = plp_.choose(candidates, tableOf, sight);
+    ranges_ = plp_.ranges(candidates, tableOf, sight);
+    drawn_.assign(ranges_.size(), false);
+    shareBudget(blocks);
     stats.visibilityMs += watch.lap();
 }
 
-void PlpFrame::readTables(const std::vector<std::uint32_t>& pages, PageCache& cache,
-                          protocol::TileStats& stats) {
+void PlpFrame::readTables(const std::vector<std::uint32_t>& pages, protocol::TileStats& stats) {
     std::unordered_map<std::uint32_t, PageTable> tables;
     std::vector<std::uint32_t> unknown;
     for (const std::uint32_t page : pages) {
@@ -39,23 +48,82 @@ void PlpFrame::readTables(const std::vector<std::uint32_t>& pages, PageCache& ca
     tables_ = std::move(tables);
     if (unknown.empty()) return;
 
-    cache.beginFrame(unknown);
-    for (PageCache::Next next = cache.next(); next.answer != PageCache::Answer::end; next = cache.next()) {
+    cache_.beginFrame(unknown);
+    for (PageCache::Next next = cache_.next(); next.answer != PageCache::Answer::end; next = cache_.next()) {
         if (next.answer == PageCache::Answer::page) tables_[next.page.page] = *next.page.table;
-        if (next.answer == PageCache::Answer::full) cache.release();
+        if (next.answer == PageCache::Answer::full) cache_.release();
     }
-    cache.release();
-    addCounters(cache.counters(), stats);
+    cache_.release();
+    addCounters(cache_.counters(), stats);
 }
 
-std::vector<VisibleRanges> PlpFrame::visible(const Frustum& frustum, const LatticeEye& eye) const {
-    std::vector<VisibleRanges> visible = chosen_;
-    std::erase_if(visible, [&](const VisibleRanges& ranges) {
-        bool any = false;
-        forRangesIn(tables_.at(ranges.page), ranges.firstRange, ranges.rangeCount, frustum, eye,
-                    [&](std::uint32_t, const glm::dvec3&, const glm::dvec3&) { any = true; });
-        return !any;
-    });
+// As rays would spend it: each block has what the first choice has in it and in no block before it.
+void PlpFrame::shareBudget(std::span<const BlockView> blocks) {
+    budgets_.assign(blocks.size(), 0);
+    if (blocks.size() == 1) {
+        budgets_.front() = budget_;
+        return;
+    }
+    std::uint64_t left = budget_;
+    for (const PlpRange& range : ranges_) {
+        if (range.triangles > left) continue;
+        left -= range.triangles;
+        const auto first = std::find_if(blocks.begin(), blocks.end(), [&](const BlockView& view) {
+            return !view.boxes.of(glm::dvec3(range.box.low), glm::dvec3(range.box.high)).empty();
+        });
+        if (first != blocks.end())
+            budgets_[static_cast<std::size_t>(first - blocks.begin())] += range.triangles;
+    }
+    budgets_.front() += left;
+}
+
+void PlpFrame::drawBlock(const BlockView& view, protocol::TileStats& stats) {
+    Stopwatch watch;
+    PlpSpending spending(rangesIn(view), budgets_.front());
+    budgets_.pop_front();
+    std::vector<VisibleRanges> next = take(spending, view.eye);
+    stats.visibilityMs += watch.lap();
+
+    cache_.beginFrame(pagesOf(next));
+    renderer_.beginBlock(view.block);
+    pages_.drawAll(view, next, stats);
+    while (!spending.done()) {
+        renderer_.wait();
+        watch.lap();
+        const glm::ivec2 size = renderer_.readBlockDepths(depths_);
+        pyramid_.build(depths_, size.x, size.y);
+        stats.pyramidMs += watch.lap();
+        stats.hiddenRanges += spending.look(pyramid_);
+        next = take(spending, view.eye);
+        stats.testMs += watch.lap();
+        cache_.continueFrame(pagesOf(next));
+        pages_.drawAll(view, next, stats);
+    }
+    renderer_.finish();
+    if (!budgets_.empty()) budgets_.front() += spending.left();
+}
+
+std::vector<PlpSpending::Range> PlpFrame::rangesIn(const BlockView& view) const {
+    std::vector<PlpSpending::Range> ranges;
+    for (std::uint32_t i = 0; i < ranges_.size(); ++i) {
+        const PlpRange& range = ranges_[i];
+        const ScreenBox box = view.boxes.of(glm::dvec3(range.box.low), glm::dvec3(range.box.high));
+        if (!box.empty()) ranges.push_back({i, drawn_[i] ? 0 : range.triangles, box});
+    }
+    return ranges;
+}
+
+std::vector<VisibleRanges> PlpFrame::take(PlpSpending& spending, const LatticeEye& eye) {
+    std::vector<VisibleRanges> taken;
+    for (const PlpSpending::Taken& t : spending.step()) {
+        const PlpRange& range = ranges_[t.number];
+        drawn_[t.number] = true;
+        // By the square root of what was spent before, since the first ones have most of the pixels.
+        const auto turn = static_cast<std::uint8_t>(kTurns * std::sqrt(t.spent));
+        taken.push_back({range.page, range.range, 1, 0, std::min<std::uint8_t>(turn, kTurns - 1)});
+    }
+    std::vector<VisibleRanges> visible = joined(std::move(taken));
+    frustum_.sortFrontToBack(visible, eye);
     return visible;
 }
 

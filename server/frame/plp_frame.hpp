@@ -1,11 +1,12 @@
 #pragma once
 
+#include <deque>
 #include <unordered_map>
 #include <vector>
 
-#include "common/protocol.hpp"
 #include "common/settings.hpp"
-#include "server/cache/page_cache.hpp"
+#include "server/frame/page_drawing.hpp"
+#include "server/visibility/plp_spending.hpp"
 #include "server/visibility/plp_visibility.hpp"
 
 namespace iwalk {
@@ -14,23 +15,38 @@ namespace iwalk {
 // candidates, so that a page need not be read again to know that it is not drawn.
 class PlpFrame {
   public:
-    // References are kept.
-    PlpFrame(const Hierarchy& hierarchy, const FrustumVisibility& frustum, const Settings& settings);
+    // All outlive it.
+    PlpFrame(const Hierarchy& hierarchy, const FrustumVisibility& frustum, PageCache& cache,
+             Renderer& renderer, PageDrawing& pages, const Settings& settings);
 
-    // Chooses what a frame draws. Takes the pages of candidates from the cache where it does not know their
-    // tables, between two frames of its; adds times and counters to `stats`.
-    void choose(const Cut& cut, const TileSight& sight, PageCache& cache, protocol::TileStats& stats);
+    // Begins a frame of these blocks: finds what is worth drawing, and what each block may spend. Takes the
+    // pages of candidates from the cache where it does not know their tables, between two frames of its.
+    void begin(const Cut& cut, const TileSight& sight, std::span<const BlockView> blocks,
+               protocol::TileStats& stats);
 
-    // What was chosen and has a range that meets the frustum (in steps, of a part of the tile), front to
-    // back.
-    std::vector<VisibleRanges> visible(const Frustum& frustum, const LatticeEye& eye) const;
+    // The frame's next block, from beginning it to its pixels.
+    void drawBlock(const BlockView& view, protocol::TileStats& stats);
 
   private:
-    void readTables(const std::vector<std::uint32_t>& pages, PageCache& cache, protocol::TileStats& stats);
+    void readTables(const std::vector<std::uint32_t>& pages, protocol::TileStats& stats);
+    void shareBudget(std::span<const BlockView> blocks);
+    std::vector<PlpSpending::Range> rangesIn(const BlockView& view) const;
+    std::vector<VisibleRanges> take(PlpSpending& spending, const LatticeEye& eye);
 
+    const std::uint64_t budget_;
     const PlpVisibility plp_;
+    const FrustumVisibility& frustum_;
+    PageCache& cache_;
+    Renderer& renderer_;
+    PageDrawing& pages_;
+
     std::unordered_map<std::uint32_t, PageTable> tables_;  // by page
-    std::vector<VisibleRanges> chosen_;
+    // Of the frame: its ranges by priority, which of them are drawn somewhere, what blocks may spend.
+    std::vector<PlpRange> ranges_;
+    std::vector<bool> drawn_;
+    std::deque<std::uint64_t> budgets_;
+    DepthPyramid pyramid_;
+    std::vector<float> depths_;  // scratch
 };
 
 }  // namespace iwalk

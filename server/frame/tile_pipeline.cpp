@@ -104,10 +104,12 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
     const TileView view = viewOf(state);
     renderer_->beginFrame(view);
     depths_.clear();
-    if (plp_) plp_->choose(cut_, {view.projection, view.tile, view.eye, view.near}, *cache_, stats);
+    std::vector<BlockView> blocks;
+    for (const Block& block : blocksOf(view.tile)) blocks.emplace_back(view, block);
+    if (plp_) plp_->begin(cut_, {view.projection, view.tile, view.eye, view.near}, blocks, stats);
     std::vector<PageDrawing::Drawn> drawn;
     pages_->noteInto(birdsEye_ ? &drawn : nullptr);
-    for (const Block& block : blocksOf(view.tile)) drawBlock(BlockView(view, block), stats);
+    for (const BlockView& block : blocks) drawBlock(block, stats);
     pages_->noteInto(nullptr);
     if (birdsEye_) birdsEye_->draw(view, cameraOf(state).up, cut_, drawn);
 
@@ -120,23 +122,25 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
 }
 
 void TilePipeline::drawBlock(const BlockView& view, protocol::TileStats& stats) {
-    Stopwatch watch;
-    const std::vector<VisibleRanges> visible =
-        plp_ ? plp_->visible(view.frustum, view.eye) : visibility_.visible(cut_, view.frustum, view.eye);
-    stats.visibilityMs += watch.lap();
-
-    if (conservative_) {
-        conservative_->drawBlock(view, visible, stats);
-    } else {
-        cache_->beginFrame(pagesOf(visible));
-        renderer_->beginBlock(view.block);
-        pages_->drawAll(view, visible, stats);
-        renderer_->finish();
-    }
+    if (plp_)
+        plp_->drawBlock(view, stats);
+    else
+        drawVisible(view, stats);
     renderer_->sampleBlockDepths(depths_);
     cache_->release();
 
     addCounters(cache_->counters(), stats);
+}
+
+void TilePipeline::drawVisible(const BlockView& view, protocol::TileStats& stats) {
+    Stopwatch watch;
+    const std::vector<VisibleRanges> visible = visibility_.visible(cut_, view.frustum, view.eye);
+    stats.visibilityMs += watch.lap();
+    if (conservative_) return conservative_->drawBlock(view, visible, stats);
+    cache_->beginFrame(pagesOf(visible));
+    renderer_->beginBlock(view.block);
+    pages_->drawAll(view, visible, stats);
+    renderer_->finish();
 }
 
 double nearPlane(const Settings& settings, const Manifest& manifest) {
@@ -152,7 +156,8 @@ Result<void> TilePipeline::apply(const Settings& settings) {
     birdsEye_.reset();
     if (settings.show == Show::birdseye)
         birdsEye_.emplace(dataset_.hierarchy, visibility_, *cache_, *renderer_, *pages_);
-    if (settings.mode == Mode::plp) plp_.emplace(dataset_.hierarchy, visibility_, settings);
+    if (settings.mode == Mode::plp)
+        plp_.emplace(dataset_.hierarchy, visibility_, *cache_, *renderer_, *pages_, settings);
     if (settings.mode != Mode::cplp) return {};
     ASSIGN_OR_RETURN(std::unique_ptr<Occlusion> occlusion, makeOcclusion(settings.occlusion, *renderer_));
     conservative_.emplace(visibility_, *cache_, *renderer_, *pages_, std::move(occlusion), costOfLooking_);

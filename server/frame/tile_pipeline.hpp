@@ -52,6 +52,7 @@ class TilePipeline {
 
     TileView viewOf(const FrameState& state) const;
     void drawBlock(const BlockView& view, protocol::TileStats& stats);
+    void drawVisible(const BlockView& view, protocol::TileStats& stats);
 
     const Dataset& dataset_;
     const Wall& wall_;
@@ -59,11 +60,11 @@ class TilePipeline {
     const double costOfLooking_;
     Cut cut_;
     const FrustumVisibility visibility_;
-    std::optional<PlpFrame> plp_;  // in mode plp
-    std::vector<float> depths_;    // some of the frame's, window depths
+    std::vector<float> depths_;  // some of the frame's, window depths
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<PageCache> cache_;  // after the renderer, whose memory it uses
     std::optional<PageDrawing> pages_;
+    std::optional<PlpFrame> plp_;                      // with --mode plp
     std::optional<ConservativeDrawing> conservative_;  // with --mode cplp
     std::optional<BirdsEye> birdsEye_;                 // with --show birdseye
 };

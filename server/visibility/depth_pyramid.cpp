@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 
 #include "common/check.hpp"
 
@@ -52,6 +53,19 @@ bool DepthPyramid::hides(const ScreenBox& box) const {
     const int edge = std::max(box.right - box.left, box.bottom - box.top);
     const int level = std::bit_width(static_cast<unsigned>(edge - 1));
     return hides(box, std::min(level, static_cast<int>(levels_.size()) - 1));
+}
+
+double DepthPyramid::openPixels(const ScreenBox& box) const {
+    if (box.empty()) return 0;
+    constexpr int kRows = 16;
+    const Level& pixels = levels_.front();
+    const int height = box.bottom - box.top, apart = (height + kRows - 1) / kRows;
+    int open = 0, rows = 0;
+    for (int y = box.top + (apart - 1) / 2; y < box.bottom; y += apart, ++rows) {
+        const float* row = pixels.farthest.data() + std::ptrdiff_t{y} * pixels.width;
+        for (int x = box.left; x < box.right; ++x) open += row[x] <= box.depth ? 1 : 0;
+    }
+    return static_cast<double>(open) * height / rows;
 }
 
 bool DepthPyramid::hides(const ScreenBox& box, int index) const {

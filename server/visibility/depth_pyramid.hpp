@@ -18,6 +18,9 @@ class DepthPyramid {
     // it fast.
     bool hides(const ScreenBox& box) const;
 
+    // About how many pixels of the box are not strictly nearer than it: counted in 16 rows at the most.
+    double openPixels(const ScreenBox& box) const;
+
   private:
     struct Level {
         int width = 0, height = 0;  // in squares

@@ -7,7 +7,6 @@
 #include <unordered_set>
 
 #include "server/visibility/boxes.hpp"
-#include "server/visibility/ray_grid.hpp"
 
 namespace iwalk {
 namespace {
@@ -23,10 +22,8 @@ constexpr float kHiding = 0.35f;
 // The optical depth of interior nodes' ranges, for which no opacity was measured.
 constexpr float kUnknownDepth = 1;
 
-// A range in the frustum.
 struct Seen {
-    std::uint32_t page, range, triangles;
-    EyeBox box;
+    PlpRange range;
     float density;   // optical depth per step
     float distance;  // of the middle of its box from the eye, squared and times 4
     float arriving;  // Candidate::arriving
@@ -58,23 +55,29 @@ class RangeScores {
             if (!meets(frustum_, low, high)) return;
             const EyeBox box{glm::vec3(low), glm::vec3(high)};
             const glm::vec3 middle = box.low + box.high;
-            seen_.push_back({page, index, range.indexCount / 3, box, density, glm::dot(middle, middle),
+            seen_.push_back({{page, index, range.indexCount / 3, box},
+                             density,
+                             glm::dot(middle, middle),
                              candidate.arriving});
         });
     }
 
     // By score, the highest first; equal ones in an order of their own.
-    std::vector<Seen> scored(double raysPerPixel) {
+    std::vector<PlpRange> ranked(double raysPerPixel) {
         std::sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
-            return std::tuple(a.distance, a.page, a.range) < std::tuple(b.distance, b.page, b.range);
+            return std::tuple(a.distance, a.range.page, a.range.range) <
+                   std::tuple(b.distance, b.range.page, b.range.range);
         });
         RayGrid rays(sight_.projection, sight_.tile, sight_.near, raysPerPixel);
-        for (Seen& range : seen_)
-            range.score = range.arriving * rays.pass(range.box, range.density).contribution /
-                          static_cast<float>(range.triangles);
+        for (Seen& seen : seen_)
+            seen.score = seen.arriving * rays.pass(seen.range.box, seen.density).contribution /
+                         static_cast<float>(seen.range.triangles);
         std::stable_sort(seen_.begin(), seen_.end(),
                          [](const Seen& a, const Seen& b) { return a.score > b.score; });
-        return std::move(seen_);
+        std::vector<PlpRange> ranges;
+        ranges.reserve(seen_.size());
+        for (const Seen& seen : seen_) ranges.push_back(seen.range);
+        return ranges;
     }
 
   private:
@@ -118,13 +121,8 @@ class RangeScores {
 
 }  // namespace
 
-PlpVisibility::PlpVisibility(const Hierarchy& hierarchy, const FrustumVisibility& frustum,
-                             std::uint64_t budget, double raysPerPixel)
-    : hierarchy_(hierarchy),
-      frustum_(frustum),
-      cells_(cellsOfNodes(hierarchy)),
-      budget_(budget),
-      raysPerPixel_(raysPerPixel) {}
+PlpVisibility::PlpVisibility(const Hierarchy& hierarchy, std::uint64_t budget, double raysPerPixel)
+    : hierarchy_(hierarchy), cells_(cellsOfNodes(hierarchy)), budget_(budget), raysPerPixel_(raysPerPixel) {}
 
 std::vector<PlpVisibility::Candidate> PlpVisibility::candidates(const Cut& cut,
                                                                 const TileSight& sight) const {
@@ -157,30 +155,11 @@ std::vector<std::uint32_t> PlpVisibility::pagesOf(const std::vector<Candidate>& 
     return pages;
 }
 
-std::vector<VisibleRanges> PlpVisibility::choose(const std::vector<Candidate>& candidates,
-                                                 const Tables& tables, const TileSight& sight) const {
+std::vector<PlpRange> PlpVisibility::ranges(const std::vector<Candidate>& candidates, const Tables& tables,
+                                            const TileSight& sight) const {
     RangeScores scores(hierarchy_, cells_, tables, sight);
     for (const Candidate& candidate : candidates) scores.add(candidate);
-
-    // What is too large for what is left of the budget leaves room for what comes after it.
-    std::vector<VisibleRanges> taken;
-    std::vector<std::uint64_t> spent;  // before each
-    std::uint64_t left = budget_;
-    for (const Seen& range : scores.scored(raysPerPixel_)) {
-        if (range.triangles > left) continue;
-        spent.push_back(budget_ - left);
-        left -= range.triangles;
-        taken.push_back({range.page, range.range, 1});
-    }
-    // By the square root of what was spent before, since the first ones have most of the pixels.
-    const double all = std::max(1.0, static_cast<double>(budget_ - left));
-    for (std::size_t i = 0; i < taken.size(); ++i)
-        taken[i].turn = static_cast<std::uint8_t>(
-            std::min(kTurns - 1.0, kTurns * std::sqrt(static_cast<double>(spent[i]) / all)));
-
-    std::vector<VisibleRanges> visible = joined(std::move(taken));
-    frustum_.sortFrontToBack(visible, sight.eye);
-    return visible;
+    return scores.ranked(raysPerPixel_);
 }
 
 }  // namespace iwalk

@@ -52,19 +52,6 @@ void add(Triangles& to, const Triangles& more) {
     to.insert(to.end(), more.begin(), more.end());
 }
 
-// Two triangles, at x = `x`, of a thousand parts each so that they fill ranges.
-Triangles wallAt(double x, double half, int parts) {
-    Triangles triangles;
-    const double step = 2 * half / parts;
-    for (int i = 0; i < parts; ++i)
-        for (int j = 0; j < parts; ++j) {
-            const double y = -half + step * i, z = -half + step * j;
-            triangles.push_back({glm::dvec3(x, y, z), {x, y + step, z}, {x, y + step, z + step}});
-            triangles.push_back({glm::dvec3(x, y, z), {x, y + step, z + step}, {x, y, z + step}});
-        }
-    return triangles;
-}
-
 // Towards +x, drifting a little.
 std::vector<Camera> drift(const glm::dvec3& from, const glm::dvec3& step, int frames, double fov = 60) {
     std::vector<Camera> path;

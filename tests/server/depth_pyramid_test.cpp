@@ -55,5 +55,17 @@ TEST(DepthPyramid, NothingHidesWhereNothingIsDrawn) {
     EXPECT_TRUE(pyramid.hides({2, 2, 2, 3, 1}));  // no pixel, nothing to be seen
 }
 
+TEST(DepthPyramid, OpenPixelsAreCounted) {
+    std::vector<float> depths(20 * 40, 0.5f);
+    for (std::size_t y = 0; y < 40; ++y) depths[20 * y + y % 20] = 0.25f;  // a pixel in each row
+    DepthPyramid pyramid;
+    pyramid.build(depths, 20, 40);
+    EXPECT_EQ(pyramid.openPixels({0, 0, 20, 16, 0.3f}), 16);  // few rows: exact
+    EXPECT_EQ(pyramid.openPixels({0, 0, 20, 40, 0.3f}), 40);  // some of the rows stand for all
+    EXPECT_EQ(pyramid.openPixels({0, 0, 20, 40, 0.1f}), 0);
+    EXPECT_EQ(pyramid.openPixels({3, 5, 7, 38, ScreenBox::kAtTheEye}), 4 * 33);
+    EXPECT_EQ(pyramid.openPixels({3, 5, 3, 38, 1}), 0);
+}
+
 }  // namespace
 }  // namespace iwalk

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "server/visibility/frustum_visibility.hpp"
+#include "server/visibility/plp_spending.hpp"
 #include "server/visibility/plp_visibility.hpp"
 #include "server/visibility/ray_grid.hpp"
 #include "tests/common/dataset_fixture.hpp"
@@ -110,11 +112,26 @@ struct Grid {
         }
         return contribution / rays;
     }
-    std::vector<VisibleRanges> choose(const TileSight& sight, std::uint64_t budget) const {
-        const FrustumVisibility frustum(hierarchy);
-        const PlpVisibility plp(hierarchy, frustum, budget, 0.01);
-        return plp.choose(
+    std::vector<PlpRange> ranked(const TileSight& sight, std::uint64_t budget) const {
+        const PlpVisibility plp(hierarchy, budget, 0.01);
+        return plp.ranges(
             plp.candidates(cut, sight), [&](std::uint32_t page) { return &tables[page]; }, sight);
+    }
+    // What is drawn when no look tells anything, in the order of frustum mode.
+    std::vector<VisibleRanges> choose(const TileSight& sight, std::uint64_t budget) const {
+        const std::vector<PlpRange> ranges = ranked(sight, budget);
+        std::vector<PlpSpending::Range> open;
+        for (const PlpRange& range : ranges)
+            open.push_back({static_cast<std::uint32_t>(open.size()), range.triangles, {0, 0, 1, 1, 0}});
+        std::vector<VisibleRanges> chosen;
+        PlpSpending spending(open, budget);
+        do {
+            for (const PlpSpending::Taken& taken : spending.step())
+                chosen.push_back({ranges[taken.number].page, ranges[taken.number].range, 1});
+        } while (!spending.done());
+        chosen = joined(std::move(chosen));
+        FrustumVisibility(hierarchy).sortFrontToBack(chosen, sight.eye);
+        return chosen;
     }
 };
 
@@ -263,21 +280,19 @@ TEST(PlpVisibilityTest, NothingInViewAndFarAway) {
 
 TEST(PlpVisibilityTest, WithoutATableRangesAreLeftOut) {
     const Grid grid(0);
-    const FrustumVisibility frustum(grid.hierarchy);
-    const PlpVisibility plp(grid.hierarchy, frustum, 1u << 20, 0.01);
+    const PlpVisibility plp(grid.hierarchy, 1u << 20, 0.01);
     const TileSight sight = sightFrom(kOutside, kAhead);
     const auto candidates = plp.candidates(grid.cut, sight);
     EXPECT_EQ(plp.pagesOf(candidates).size(), 64u);
     const auto table = [&](std::uint32_t page) { return page == 7 ? nullptr : &grid.tables[page]; };
-    const Ids chosen = idsOf(plp.choose(candidates, table, sight));
-    EXPECT_EQ(chosen.size(), 63 * kRanges);
-    EXPECT_TRUE(std::ranges::none_of(chosen, [](const auto& id) { return id.first == 7; }));
+    const std::vector<PlpRange> ranges = plp.ranges(candidates, table, sight);
+    EXPECT_EQ(ranges.size(), 63 * kRanges);
+    EXPECT_TRUE(std::ranges::none_of(ranges, [](const PlpRange& range) { return range.page == 7; }));
 }
 
 TEST(PlpVisibilityTest, CandidatesAreSeveralTimesTheBudget) {
     const Grid grid(0);
-    const FrustumVisibility frustum(grid.hierarchy);
-    const PlpVisibility plp(grid.hierarchy, frustum, 1000, 0.01);
+    const PlpVisibility plp(grid.hierarchy, 1000, 0.01);
     EXPECT_EQ(plp.candidates(grid.cut, sightFrom(kOutside, kAhead)).size(), 15u);  // 6000 triangles
 }
 
@@ -295,8 +310,7 @@ TEST(PlpVisibilityTest, ATreeOfOneLeaf) {
 // What stands for all below a node is chosen in its place.
 TEST(PlpVisibilityTest, CutsOfCoarseLevels) {
     const Hierarchy hierarchy = makeHierarchy();
-    const FrustumVisibility frustum(hierarchy);
-    const PlpVisibility plp(hierarchy, frustum, 1000, 0.01);
+    const PlpVisibility plp(hierarchy, 1000, 0.01);
     const auto entries = [&](unsigned level) {
         std::set<std::uint32_t> found;
         const TileSight sight = sightFrom({-400, 0, 0}, kAhead);

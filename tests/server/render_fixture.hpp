@@ -15,6 +15,19 @@ class Silent : public Progress {
     void done(double) override {}
 };
 
+// A square at x = `x`, in 2 * parts * parts triangles, so that it fills ranges.
+inline Triangles wallAt(double x, double half, int parts) {
+    Triangles triangles;
+    const double step = 2 * half / parts;
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; j < parts; ++j) {
+            const double y = -half + step * i, z = -half + step * j;
+            triangles.push_back({glm::dvec3(x, y, z), {x, y + step, z}, {x, y + step, z + step}});
+            triangles.push_back({glm::dvec3(x, y, z), {x, y + step, z + step}, {x, y, z + step}});
+        }
+    return triangles;
+}
+
 // A GL context for all tests of this program.
 class RenderTest : public ::testing::Test {
   protected:

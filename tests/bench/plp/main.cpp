@@ -56,18 +56,14 @@ Spread spreadOf(std::vector<double> values) {
     return {values[values.size() / 2], values.front(), values[values.size() / 10]};
 }
 
-// All tiles of all frames of a wall of n x n tiles.
-Result<std::vector<std::vector<Shot>>> takeShots(const Bench& bench, const Options& options, int n,
-                                                 const std::vector<Camera>& cameras) {
-    const int width = n * options.width, height = n * options.height;
-    const Wall wall = tools::wallOf(width, height, n, n);
-    ASSIGN_OR_RETURN(const std::unique_ptr<OwnerRenders> renders,
-                     OwnerRenders::create(bench.dataset, bench.cut, bench.pages, width, height));
+// All tiles of all frames of a wall.
+std::vector<std::vector<Shot>> takeShots(const Bench& bench, const Wall& wall,
+                                         const std::vector<Camera>& cameras, OwnerRenders& renders) {
     const int step = bench.dataset.manifest.stepExponent;
     const double near = std::ldexp(nearPlane({}, bench.dataset.manifest), -step);
     std::vector<std::vector<Shot>> frames;
     for (const Camera& camera : cameras) {
-        std::vector<std::vector<Owned>> owned = renders->draw(wall, camera);
+        std::vector<std::vector<Owned>> owned = renders.draw(wall, camera);
         const ScreenProjection projection = projectScreen(wall.screens(camera.fovY)[0], camera);
         std::vector<Shot>& shots = frames.emplace_back();
         for (std::size_t tile = 0; tile < wall.tiles.size(); ++tile)
@@ -127,7 +123,7 @@ json addRow(int n, const std::string& method, std::uint64_t budget, const Spread
 }
 
 json accuracy(const Bench& bench, const Options& options, int n, const std::vector<Camera>& cameras,
-              const std::vector<std::vector<Shot>>& frames) {
+              const std::vector<std::vector<Shot>>& frames, OwnerRenders& renders) {
     const OriginalPlp original(bench.dataset.hierarchy, bench.cut, bench.dataset.manifest.leafTriangles);
     std::printf("\n%d tile%s of %dx%d, right pixels in %%: median (least)\n\n| chosen by |", n * n,
                 n > 1 ? "s" : "", options.width, options.height);
@@ -136,7 +132,7 @@ json accuracy(const Bench& bench, const Options& options, int n, const std::vect
     std::printf("\n| --- |");
     for (std::size_t i = 0; i < options.budgets.size(); ++i) std::printf(" --- |");
     json rows = json::array();
-    for (const Method& method : allMethods(bench, original)) {
+    for (const Method& method : allMethods(bench, original, renders)) {
         std::printf("\n| %s |", method.name.c_str());
         for (const std::uint64_t budget : options.budgets)
             rows.push_back(addRow(n, method.name, budget, accuracyOf(method, frames, budget)));
@@ -168,7 +164,7 @@ double trianglesInView(const Bench& bench, const FrustumVisibility& visibility, 
 // What a tile costs, and how many triangles the ranges have that own a pixel.
 json costs(const Bench& bench, const Options& options, int n, const std::vector<std::vector<Shot>>& frames) {
     const FrustumVisibility visibility(bench.dataset.hierarchy);
-    const PlpVisibility plp(bench.dataset.hierarchy, visibility, options.budgets.back(), bench.raysPerPixel);
+    const PlpVisibility plp(bench.dataset.hierarchy, options.budgets.back(), bench.raysPerPixel);
     const auto table = [&](std::uint32_t page) { return &bench.pages.tables[page]; };
     std::vector<double> nodes, ranges, perMillion, inView, owners;
     for (const std::vector<Shot>& shots : frames)
@@ -176,7 +172,7 @@ json costs(const Bench& bench, const Options& options, int n, const std::vector<
             Stopwatch watch;
             const auto candidates = plp.candidates(bench.cut, shot.sight);
             nodes.push_back(watch.lap());
-            plp.choose(candidates, table, shot.sight);
+            plp.ranges(candidates, table, shot.sight);
             ranges.push_back(watch.lap());
             inView.push_back(trianglesInView(bench, visibility, shot.sight) / 1e6);
             if (inView.back() > 0) perMillion.push_back((nodes.back() + ranges.back()) / inView.back());
@@ -218,8 +214,12 @@ Result<void> run(const Options& options) {
                 {"costs", json::array()}};
     std::printf("%s, %d frames of %s\n", options.dataset.c_str(), options.frames, options.path.c_str());
     for (const int n : options.tiles) {
-        ASSIGN_OR_RETURN(const auto frames, takeShots(bench, options, n, cameras));
-        for (json& row : accuracy(bench, options, n, cameras, frames))
+        const Wall wall = tools::wallOf(n * options.width, n * options.height, n, n);
+        ASSIGN_OR_RETURN(
+            const std::unique_ptr<OwnerRenders> renders,
+            OwnerRenders::create(bench.dataset, bench.cut, bench.pages, wall.width, wall.height));
+        const std::vector<std::vector<Shot>> frames = takeShots(bench, wall, cameras, *renders);
+        for (json& row : accuracy(bench, options, n, cameras, frames, *renders))
             report["accuracy"].push_back(std::move(row));
         report["costs"].push_back(costs(bench, options, n, frames));
     }

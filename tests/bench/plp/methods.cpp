@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "server/visibility/plp_spending.hpp"
+
 namespace iwalk::bench {
 namespace {
 
@@ -53,12 +55,43 @@ Method wholeEntries(const char* name, const Bench& bench, EntryScore score) {
             }};
 }
 
-Method ours(const Bench& bench) {
-    return {"rays, ranges (`--mode plp`)", [&bench](const Shot& shot, std::uint64_t budget) {
-                const FrustumVisibility frustum(bench.dataset.hierarchy);
-                const PlpVisibility plp(bench.dataset.hierarchy, frustum, budget, bench.raysPerPixel);
-                const auto table = [&](std::uint32_t page) { return &bench.pages.tables[page]; };
-                return plp.choose(plp.candidates(bench.cut, shot.sight), table, shot.sight);
+std::vector<PlpRange> rangesByRays(const Bench& bench, const Shot& shot, std::uint64_t budget) {
+    const PlpVisibility plp(bench.dataset.hierarchy, budget, bench.raysPerPixel);
+    const auto table = [&](std::uint32_t page) { return &bench.pages.tables[page]; };
+    return plp.ranges(plp.candidates(bench.cut, shot.sight), table, shot.sight);
+}
+
+// As PlpFrame does, with the tile as one block.
+Method ours(const Bench& bench, OwnerRenders& renders) {
+    return {"rays, ranges, looks (`--mode plp`)", [&](const Shot& shot, std::uint64_t budget) {
+                const std::vector<PlpRange> ranges = rangesByRays(bench, shot, budget);
+                const BoxProjection boxes(shot.sight.projection, shot.sight.tile, shot.sight.near);
+                std::vector<PlpSpending::Range> open;
+                for (std::uint32_t i = 0; i < ranges.size(); ++i) {
+                    const EyeBox& box = ranges[i].box;
+                    const ScreenBox onScreen = boxes.of(glm::dvec3(box.low), glm::dvec3(box.high));
+                    if (!onScreen.empty()) open.push_back({i, ranges[i].triangles, onScreen});
+                }
+                PlpSpending spending(std::move(open), budget);
+                std::vector<VisibleRanges> chosen;
+                while (true) {
+                    for (const PlpSpending::Taken& taken : spending.step())
+                        chosen.push_back({ranges[taken.number].page, ranges[taken.number].range, 1});
+                    if (spending.done()) return chosen;
+                    DepthPyramid drawn;
+                    drawn.build(renders.depthsOf(shot.sight, chosen), shot.sight.tile.width,
+                                shot.sight.tile.height);
+                    spending.look(drawn);
+                }
+            }};
+}
+
+Method withoutLooks(const Bench& bench) {
+    return {"rays, ranges", [&bench](const Shot& shot, std::uint64_t budget) {
+                std::vector<Item> items;
+                for (const PlpRange& range : rangesByRays(bench, shot, budget))
+                    items.push_back({{range.page, range.range, 1}, range.triangles, 0});
+                return spend(std::move(items), budget);
             }};
 }
 
@@ -104,9 +137,10 @@ Method oracleOfEntries(const Bench& bench) {
 
 }  // namespace
 
-std::vector<Method> allMethods(const Bench& bench, const OriginalPlp& original) {
+std::vector<Method> allMethods(const Bench& bench, const OriginalPlp& original, OwnerRenders& renders) {
     return {
-        ours(bench),
+        ours(bench, renders),
+        withoutLooks(bench),
         wholeEntries("rays, whole nodes, sum per triangle", bench,
                      [](const EntryPriority& p, const LevelRecord& entry) {
                          return p.contribution / std::max(1.0, 1.0 * entry.triangles);

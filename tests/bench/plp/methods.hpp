@@ -32,7 +32,7 @@ struct Method {
 };
 
 // Ours, others by rays, the original, and two that know the truth.
-std::vector<Method> allMethods(const Bench& bench, const OriginalPlp& original);
+std::vector<Method> allMethods(const Bench& bench, const OriginalPlp& original, OwnerRenders& renders);
 
 // Pixels of a tile that show what they would when nothing were missing, when the owners of all others are
 // not drawn.

@@ -90,25 +90,8 @@ std::vector<std::vector<Owned>> OwnerRenders::draw(const Wall& wall, const Camer
     const double near = std::ldexp(nearPlane({}, dataset_.manifest), -step);
     const Frustum frustum = frustumOf(projection, {0, 0, width_, height_}, 1, near);
 
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    const GLuint nobody[] = {0, 0, 0, 0};
-    const float far[] = {0};
     glDisable(GL_SCISSOR_TEST);
-    glClearNamedFramebufferuiv(framebuffer_, GL_COLOR, 0, nobody);
-    glClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, far);
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glDepthFunc(GL_GREATER);
-    glEnable(GL_DEPTH_TEST);
-    const int edge = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(width_, height_))));
-    glViewport(0, 0, edge, edge);
-    const float half = static_cast<float>(edge) / 2;
-    for (const GLuint program : programs_) {
-        glProgramUniformMatrix3fv(program, kToPixels, 1, GL_FALSE,
-                                  glm::value_ptr(glm::mat3(projection.toPixels)));
-        glProgramUniform1f(program, kNear, static_cast<float>(near));
-        glProgramUniform3f(program, kWindow, half, half, half);
-    }
-    used_ = 0;
+    begin(projection, near);
     std::vector<Range> drawn;
     for (const VisibleRanges& ranges : FrustumVisibility(dataset_.hierarchy).visible(cut_, frustum, eye)) {
         const PageTable& table = pages_.tables[ranges.page];
@@ -125,6 +108,43 @@ std::vector<std::vector<Owned>> OwnerRenders::draw(const Wall& wall, const Camer
     std::vector<std::vector<Owned>> owned;
     for (const Tile& tile : wall.tiles) owned.push_back(countTile(tile.onScreen, ids));
     return owned;
+}
+
+std::vector<float> OwnerRenders::depthsOf(const TileSight& sight, const std::vector<VisibleRanges>& chosen) {
+    const PixelRect& tile = sight.tile;
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(tile.x, tile.y, tile.width, tile.height);
+    begin(sight.projection, sight.near);
+    for (const VisibleRanges& some : chosen) {
+        const auto& ranges = pages_.tables[some.page].ranges;
+        const auto first = ranges.begin() + some.firstRange;
+        drawPage(dataset_.hierarchy.pages[some.page], some.page, sight.eye, {first, first + some.rangeCount});
+    }
+    std::vector<float> depths(static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height));
+    glReadPixels(tile.x, tile.y, tile.width, tile.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+    return depths;
+}
+
+// Within the scissor.
+void OwnerRenders::begin(const ScreenProjection& projection, double near) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    const GLuint nobody[] = {0, 0, 0, 0};
+    const float far[] = {0};
+    glClearNamedFramebufferuiv(framebuffer_, GL_COLOR, 0, nobody);
+    glClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, far);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glDepthFunc(GL_GREATER);
+    glEnable(GL_DEPTH_TEST);
+    const int edge = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(width_, height_))));
+    glViewport(0, 0, edge, edge);
+    const float half = static_cast<float>(edge) / 2;
+    for (const GLuint program : programs_) {
+        glProgramUniformMatrix3fv(program, kToPixels, 1, GL_FALSE,
+                                  glm::value_ptr(glm::mat3(projection.toPixels)));
+        glProgramUniform1f(program, kNear, static_cast<float>(near));
+        glProgramUniform3f(program, kWindow, half, half, half);
+    }
+    used_ = 0;
 }
 
 void OwnerRenders::drawPage(const PageRecord& record, std::uint32_t page, const LatticeEye& eye,

@@ -35,9 +35,12 @@ class OwnerRenders {
 
     // Owners of the pixels of each tile, by page and range.
     std::vector<std::vector<Owned>> draw(const Wall& wall, const Camera& camera);
+    // Window depths of the tile's pixels when these ranges are drawn and nothing else.
+    std::vector<float> depthsOf(const TileSight& sight, const std::vector<VisibleRanges>& chosen);
 
   private:
     OwnerRenders(const Dataset& dataset, const Cut& cut, const CutPages& pages, int width, int height);
+    void begin(const ScreenProjection& projection, double near);
     void drawPage(const PageRecord& record, std::uint32_t page, const LatticeEye& eye,
                   const std::vector<Range>& ranges);
     std::vector<Owned> countTile(const PixelRect& tile, const std::vector<std::uint32_t>& ids) const;
