@@ -1,5 +1,6 @@
 #include "tests/bench/visibility/bench_wall.hpp"
 
+#include <algorithm>
 #include <ctime>
 
 #include "server/frame/tile_counters.hpp"
@@ -7,9 +8,12 @@
 namespace iwalk::bench {
 namespace {
 
-Settings inMode(Mode mode) {
+// All tiles of a wall together have at most 4 GB.
+Settings inMode(Mode mode, int tiles) {
     Settings settings;
     settings.mode = mode;
+    settings.cacheBytes =
+        std::min(settings.cacheBytes, (std::uint64_t{4} << 30) / static_cast<unsigned>(tiles));
     return settings;
 }
 
@@ -37,9 +41,9 @@ void draw(const std::string& name, tools::WallServers& servers, const Camera& ca
 
 BenchWall::BenchWall(const Dataset& dataset, int width, int height, int n, double costOfLooking)
     : wall_(tools::wallOf(n * width, n * height, n, n)),
-      frustum_(dataset, wall_, inMode(Mode::frustum)),
-      cplp_(dataset, wall_, inMode(Mode::cplp), costOfLooking),
-      plp_(dataset, wall_, inMode(Mode::plp)) {}
+      frustum_(dataset, wall_, inMode(Mode::frustum, n * n)),
+      cplp_(dataset, wall_, inMode(Mode::cplp, n * n), costOfLooking),
+      plp_(dataset, wall_, inMode(Mode::plp, n * n)) {}
 
 void BenchWall::drawFrame(const Camera& camera, Series& series) {
     draw("frustum", frustum_, camera, series);
