@@ -1,4 +1,4 @@
-// iwalk-server: one MPI rank draws one tile of the wall.
+// iwalk-server: each MPI rank draws one or more tiles of the wall.
 
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -58,8 +58,8 @@ bool allFine(Sync& sync, const Result<void>& mine) {
 
 Result<void> readWall(ServerOptions& options, const Sync& sync) {
     RETURN_IF_ERROR(readWallFile(options));
-    if (options.wall.tiles.size() == static_cast<std::size_t>(sync.size())) return {};
-    return fail("{} has {} tiles, but there are {} ranks: start mpirun -np {}", options.wallFile,
+    if (options.wall.tiles.size() >= static_cast<std::size_t>(sync.size())) return {};
+    return fail("{} has {} tiles, but there are {} ranks: start mpirun -np {}, or fewer", options.wallFile,
                 options.wall.tiles.size(), sync.size(), options.wall.tiles.size());
 }
 
@@ -69,15 +69,22 @@ Result<void> readInputs(ServerOptions& options, Dataset& dataset, const Sync& sy
     return {};
 }
 
-// From here on rank i draws tile i.
-Result<void> placeRanks(const Wall& wall, Sync& sync) {
-    const std::vector<std::string> hosts = sync.hosts();
-    ASSIGN_OR_RETURN(const std::vector<std::size_t> tiles, tilesOfRanks(wall, hosts));
-    sync.renumber(static_cast<int>(tiles[static_cast<std::size_t>(sync.rank())]));
+// Tiles by rank.
+using Shares = std::vector<std::vector<std::size_t>>;
+
+// From here on ranks are numbered by their first tiles.
+Result<void> placeRanks(const Wall& wall, Sync& sync, Shares& shares) {
+    ASSIGN_OR_RETURN(shares, tilesOfRanks(wall, sync.hosts()));
+    const std::vector<std::size_t> mine = shares[static_cast<std::size_t>(sync.rank())];
+    std::sort(shares.begin(), shares.end());
+    std::vector<int> counts;
+    for (const auto& share : shares) counts.push_back(static_cast<int>(share.size()));
+    const auto number = std::find(shares.begin(), shares.end(), mine) - shares.begin();
+    sync.renumber(static_cast<int>(number), counts);
     return {};
 }
 
-protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& dataset,
+protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& dataset, const Shares& shares,
                               const std::vector<std::string>& hosts) {
     protocol::Welcome welcome;
     welcome.serverVersion = kVersion;
@@ -88,11 +95,14 @@ protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& datas
         welcome.wallWidth = options.wall.width;
         welcome.wallHeight = options.wall.height;
     }
-    for (std::size_t i = 0; i < options.wall.tiles.size(); ++i) {
-        const PixelRect& rect = options.wall.tiles[i].onWall;
-        welcome.tiles.push_back({options.wall.tiles[i].name, hosts[i], static_cast<std::uint32_t>(i), rect.x,
-                                 rect.y, rect.width, rect.height});
-    }
+    welcome.tiles.resize(options.wall.tiles.size());
+    for (std::size_t rank = 0; rank < shares.size(); ++rank)
+        for (const std::size_t i : shares[rank]) {
+            const Tile& tile = options.wall.tiles[i];
+            const PixelRect& rect = tile.onWall;
+            welcome.tiles[i] = {tile.name,  hosts[rank], static_cast<std::uint32_t>(rank), rect.x, rect.y,
+                                rect.width, rect.height};
+        }
     for (const SettingInfo& setting : settingTable())
         welcome.settings.push_back({setting.name, settingText(options.settings, setting.name)});
     return welcome;
@@ -101,8 +111,8 @@ protocol::Welcome makeWelcome(const ServerOptions& options, const Dataset& datas
 // What a rank holds while it runs; made in this order, taken down in reverse.
 struct Rank {
     std::unique_ptr<GlContext> gl;
-    std::unique_ptr<TileOutput> output;
-    std::unique_ptr<TilePipeline> pipeline;
+    std::vector<std::unique_ptr<TileOutput>> outputs;  // of its tiles
+    std::unique_ptr<RankTiles> tiles;
     std::unique_ptr<Gateway> gateway;
 };
 
@@ -112,54 +122,67 @@ std::size_t localRank() {
     return rank ? static_cast<std::size_t>(std::strtoul(rank, nullptr, 10)) : 0;
 }
 
-// The GL that draws the tile, and the way to whoever looks at it.
-Result<void> prepareOutput(Rank& rank, const ServerOptions& options, std::size_t number) {
-    Tile tile = options.wall.tiles[number];
-    if (options.pattern != Pattern::none && options.pattern != Pattern::blend) tile.blend = {};
-    WallWindow* shown = nullptr;
+// The GL that draws the tiles, and the way to whoever looks at them.
+Result<void> prepareOutputs(Rank& rank, const ServerOptions& options,
+                            const std::vector<std::size_t>& numbers) {
+    std::vector<WallWindows::Place> places;
+    for (const std::size_t number : numbers)
+        places.push_back({options.wall.tiles[number], options.wall.windowPlace(number)});
+    WallWindows* shown = nullptr;
     if (options.window) {
-        ASSIGN_OR_RETURN(std::unique_ptr<WallWindow> window,
-                         WallWindow::open(tile, options.wall.windowPlace(number)));
-        shown = window.get();
-        rank.gl = std::move(window);
+        ASSIGN_OR_RETURN(std::unique_ptr<WallWindows> windows, WallWindows::open(places));
+        shown = windows.get();
+        rank.gl = std::move(windows);
     } else {
         ASSIGN_OR_RETURN(rank.gl, GlContext::createHeadless(localRank()));
     }
-    ASSIGN_OR_RETURN(rank.output, TileOutput::create(tile, shown));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        Tile& tile = places[i].tile;
+        if (options.pattern != Pattern::none && options.pattern != Pattern::blend) tile.blend = {};
+        ASSIGN_OR_RETURN(std::unique_ptr<TileOutput> output,
+                         TileOutput::create(tile, shown ? &shown->window(i) : nullptr));
+        rank.outputs.push_back(std::move(output));
+    }
     return {};
 }
 
-Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& dataset, const Sync& sync) {
-    const auto number = static_cast<std::size_t>(sync.rank());
-    RETURN_IF_ERROR(prepareOutput(rank, options, number));
-    ASSIGN_OR_RETURN(rank.pipeline, TilePipeline::create(dataset, options.wall, number, options.settings));
+Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& dataset, const Shares& shares,
+                     const Sync& sync) {
+    const std::vector<std::size_t>& mine = shares[static_cast<std::size_t>(sync.rank())];
+    RETURN_IF_ERROR(prepareOutputs(rank, options, mine));
+    ASSIGN_OR_RETURN(rank.tiles, RankTiles::create(dataset, options.wall, mine, options.settings));
     if (sync.rank() != 0) return {};
     std::string token;
     if (!options.tokenFile.empty()) {
         ASSIGN_OR_RETURN(token, readToken(options.tokenFile));
     }
-    ASSIGN_OR_RETURN(rank.gateway, Gateway::listen(options.address, options.port,
-                                                   makeWelcome(options, dataset, sync.hosts()), token));
+    ASSIGN_OR_RETURN(rank.gateway,
+                     Gateway::listen(options.address, options.port,
+                                     makeWelcome(options, dataset, shares, sync.hosts()), token));
     return {};
 }
 
-// Which host draws what, and why.
-void announceTiles(const Wall& wall, const std::vector<std::string>& hosts) {
+// Who draws what, and why.
+void announceTiles(const Wall& wall, const Shares& shares, const std::vector<std::string>& hosts) {
     const auto named = [](const Tile& tile) { return !tile.host.empty(); };
     const bool byHost = std::any_of(wall.tiles.begin(), wall.tiles.end(), named);
-    std::string tiles;
-    for (std::size_t i = 0; i < hosts.size(); ++i)
-        tiles += fmt::format("{}{} on {}", i > 0 ? ", " : "", wall.tiles[i].name, hosts[i]);
+    std::string text;
+    for (std::size_t rank = 0; rank < shares.size(); ++rank) {
+        for (const std::size_t tile : shares[rank])
+            text += fmt::format("{}{}", text.empty() ? "" : ", ", wall.tiles[tile].name);
+        text += fmt::format(" on {}", hosts[rank]);
+        if (shares.size() < wall.tiles.size()) text += fmt::format(" (rank {})", rank);
+    }
     std::printf("iwalk-server: tiles %s: %s\n", byHost ? "by the wall file's hosts" : "by rank",
-                tiles.c_str());
+                text.c_str());
 }
 
-void announce(const ServerOptions& options, const Dataset& dataset, const Rank& rank,
+void announce(const ServerOptions& options, const Dataset& dataset, const Rank& rank, const Shares& shares,
               const std::vector<std::string>& hosts, bool swapGroup) {
     std::printf("iwalk-server: %s: %llu triangles, %s; %s\n", options.dataset.c_str(),
                 static_cast<unsigned long long>(dataset.manifest.triangles),
                 formatBytes(dataset.bytes).c_str(), rank.gl->renderer().c_str());
-    announceTiles(options.wall, hosts);
+    announceTiles(options.wall, shares, hosts);
     if (swapGroup) std::printf("iwalk-server: the windows swap together (NV_swap_group)\n");
     const Wall& wall = options.wall;
     const std::string size = wall.freeScreens.empty()
@@ -173,30 +196,35 @@ void announce(const ServerOptions& options, const Dataset& dataset, const Rank& 
 int serve(Sync& sync, ServerOptions& options) {
     Dataset dataset;
     if (!allFine(sync, readInputs(options, dataset, sync))) return EXIT_FAILURE;
-    if (!allFine(sync, placeRanks(options.wall, sync))) return EXIT_FAILURE;
+    Shares shares;
+    if (!allFine(sync, placeRanks(options.wall, sync, shares))) return EXIT_FAILURE;
     logTo(fmt::format("iwalk-server: rank {} on {}", sync.rank(), hostOf(sync)));
     Rank rank;
-    if (!allFine(sync, prepare(rank, options, dataset, sync))) return EXIT_FAILURE;
-    const SwapGroup together(rank.output->swapGroupDriver(), [&](bool mine) { return sync.agree(mine); });
-    if (sync.rank() == 0) announce(options, dataset, rank, sync.hosts(), together.joined());
-    runFrames({sync, *rank.pipeline, *rank.output, rank.gateway.get(),
-               options.wall.tiles[static_cast<std::size_t>(sync.rank())].name, options.outputDirectory,
-               sync.rank() == 0 ? options.resumeFile : "", dataset, options.wall, options.settings,
-               stopRequested});
+    if (!allFine(sync, prepare(rank, options, dataset, shares, sync))) return EXIT_FAILURE;
+    // One rank's windows cannot all wait for one another.
+    SwapGroupDriver* const driver = rank.outputs.size() == 1 ? rank.outputs[0]->swapGroupDriver() : nullptr;
+    const SwapGroup together(driver, [&](bool mine) { return sync.agree(mine); });
+    if (sync.rank() == 0) announce(options, dataset, rank, shares, sync.hosts(), together.joined());
+    runFrames({sync, shares[static_cast<std::size_t>(sync.rank())], *rank.tiles, rank.outputs,
+               rank.gateway.get(), options.outputDirectory, sync.rank() == 0 ? options.resumeFile : "",
+               dataset, options.wall, options.settings, stopRequested});
     return EXIT_SUCCESS;
 }
 
 int servePattern(Sync& sync, ServerOptions& options) {
+    Shares shares;
     if (!allFine(sync, readWall(options, sync))) return EXIT_FAILURE;
-    if (!allFine(sync, placeRanks(options.wall, sync))) return EXIT_FAILURE;
-    const auto number = static_cast<std::size_t>(sync.rank());
+    if (!allFine(sync, placeRanks(options.wall, sync, shares))) return EXIT_FAILURE;
+    const std::vector<std::size_t>& mine = shares[static_cast<std::size_t>(sync.rank())];
     Rank rank;
-    if (!allFine(sync, prepareOutput(rank, options, number))) return EXIT_FAILURE;
-    const std::string file =
-        options.window ? "" : tileFile(options.outputDirectory, 0, options.wall.tiles[number].name);
-    const Result<void> shown =
-        showPattern({sync, *rank.output, drawPattern(options.pattern, options.wall, number, hostOf(sync)),
-                     file, stopRequested});
+    if (!allFine(sync, prepareOutputs(rank, options, mine))) return EXIT_FAILURE;
+    std::vector<PatternTile> tiles;
+    for (std::size_t i = 0; i < mine.size(); ++i)
+        tiles.push_back(
+            {*rank.outputs[i],
+             drawPattern(options.pattern, options.wall, mine[i], {sync.rank(), sync.size(), hostOf(sync)}),
+             options.window ? "" : tileFile(options.outputDirectory, 0, options.wall.tiles[mine[i]].name)});
+    const Result<void> shown = showPattern({sync, std::move(tiles), stopRequested});
     return allFine(sync, shown) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

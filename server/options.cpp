@@ -30,8 +30,8 @@ Result<void> parseListen(const std::string& text, ServerOptions& options) {
 
 CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std::string& message) {
     CLI::App app(
-        "Draws one tile of a wall per MPI rank:\n"
-        "  mpirun -np TILES iwalk-server --dataset DATASET --wall WALL.toml");
+        "Draws a wall, each MPI rank one tile, or several of them where there are fewer ranks than tiles:\n"
+        "  mpirun -np RANKS iwalk-server --dataset DATASET --wall WALL.toml");
     app.option_defaults()->always_capture_default();
     app.set_version_flag("--version", std::string("iwalk-server ") + kVersion);
     std::string listen = kDefaultListen, present = "none", patternName;
@@ -42,8 +42,9 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
                                                   {"identity", Pattern::identity}};
     app.add_option("--dataset", options.dataset, "directory that iwalk-preprocess made; every rank reads it")
         ->type_name("DIR");
-    app.add_option("--wall", options.wallFile,
-                   "TOML file of the wall; tile i is drawn by rank i, or by a rank on the host that it names")
+    app.add_option(
+           "--wall", options.wallFile,
+           "TOML file of the wall; ranks share its tiles in order, or each host's ranks those that name it")
         ->required()
         ->type_name("FILE");
     app.add_option("--listen", listen, "where rank 0 waits for clients; port 0 takes any free one")
@@ -77,7 +78,8 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
         ->check(CLI::IsMember({"grid", "blend", "identity"}))
         ->type_name("grid|blend|identity")
         ->default_str("");
-    app.add_flag("--tiles", options.tilesOnly, "prints how many tiles, and so ranks, the wall has, and ends");
+    app.add_flag("--tiles", options.tilesOnly,
+                 "prints how many tiles the wall has, and so ranks at the most, and ends");
 
     for (const SettingInfo& setting : settingTable())
         app.add_option(std::string("--") + setting.name, given[setting.name], setting.help)

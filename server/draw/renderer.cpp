@@ -16,7 +16,6 @@
 #include "server/draw/gl_objects.hpp"
 #include "server/draw/shaders.hpp"
 #include "server/draw/shading_variant.hpp"
-#include "server/draw/thumbnail.hpp"
 #include "server/draw/visibility_buffer.hpp"
 
 namespace iwalk {
@@ -27,16 +26,15 @@ constexpr std::uint32_t kNoBank = 0xffffffff;  // of pages that are not there an
 
 class GlRenderer : public Renderer {
   public:
-    GlRenderer(const PixelRect& tile, const SceneLook& look)
-        : width_(tile.width), height_(tile.height), tile_(tile), look_(look) {}
+    explicit GlRenderer(const SceneLook& look) : look_(look) {}
     ~GlRenderer() override;
-    Result<void> prepare();
+    Result<void> prepare(std::span<const PixelRect> tiles);
     Result<void> setLook(const SceneLook& look) override;
 
     Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override {
         return makeArenaBanks(bytes, kArenaAlignment, banks_);
     }
-    void beginFrame(const TileView& view) override;
+    void beginFrame(const TileView& view, TilePixels& pixels) override;
     void beginBlock(const Block& block) override;
     std::uint32_t draw(const ResidentPage& page, const PageRecord& record, std::uint32_t rank,
                        std::span<const DrawnRange> ranges) override;
@@ -47,19 +45,12 @@ class GlRenderer : public Renderer {
     glm::ivec2 readBlockDepths(std::vector<float>& depths) override;
     void readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
     glm::ivec2 bindBlock() override;
-    ColorImage readColor() override;
-    std::uint32_t colorTexture() const override { return color_; }
-    ColorImage readSmall(int width, int height) override {
-        return thumbnail_.read(framebuffer_, width_, height_, width, height);
-    }
     void sampleBlockDepths(std::vector<float>& depths) override {
         visible_.sampleDepths(inFramebuffer(), depths);
     }
-    DepthImage readDepth() override;
 
   private:
-    Result<void> makeFramebuffers();
-    void addDepthTarget();
+    Result<void> prepareBlocks(std::span<const PixelRect> tiles);
     std::uint32_t addSlot(const ResidentPage& page, const PageRecord& record, const PageLayout& layout,
                           const glm::dvec3& origin, std::uint32_t rank);
     void addTints(const ResidentPage& page, std::span<const DrawnRange> ranges);
@@ -74,15 +65,9 @@ class GlRenderer : public Renderer {
     void shade();
     void useShadingProgram();
 
-    const int width_, height_;  // px
-    const PixelRect tile_;
     SceneLook look_;
     VisibilityBuffer visible_;
     Lines lines_;
-    Thumbnail thumbnail_;
-    GLuint framebuffer_ = 0, color_ = 0;
-    GLuint captureFramebuffer_ = 0, eyeDepth_ = 0;  // with the same colour; made when depth is first wanted
-    GLuint shaded_ = 0;                             // one of the two
     std::array<GLuint, 2> visibilityPrograms_{}, vertexArrays_{};  // narrow, wide
     GLuint emptyArray_ = 0;
     std::array<GLuint, kShadeVariants> shadingPrograms_{};
@@ -92,6 +77,7 @@ class GlRenderer : public Renderer {
     std::vector<std::uint32_t> tints_;  // of slots, as in ShadedPage::tints
     std::size_t unshaded_ = 0;          // slots from here on have not been shaded
     TileView view_;
+    TilePixels* pixels_ = nullptr;  // of the view
     Block block_;
     GLuint used_ = 0;  // the visibility program that has this block's uniforms and is in use
 };
@@ -101,22 +87,13 @@ GlRenderer::~GlRenderer() {
     for (const GLuint program : shadingPrograms_) glDeleteProgram(program);
     for (const GLuint array : {vertexArrays_[0], vertexArrays_[1], emptyArray_})
         glDeleteVertexArrays(1, &array);
-    for (const GLuint texture : {color_, eyeDepth_}) glDeleteTextures(1, &texture);
-    for (const GLuint framebuffer : {framebuffer_, captureFramebuffer_})
-        glDeleteFramebuffers(1, &framebuffer);
     glDeleteBuffers(1, &pagesBuffer_);
     glDeleteBuffers(1, &tintsBuffer_);
     glDeleteBuffers(static_cast<GLsizei>(banks_.size()), banks_.data());
 }
 
-Result<void> GlRenderer::prepare() {
-    GLint largest = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    if (width_ > largest || height_ > largest)
-        return fail(
-            "a tile of {}x{} px is larger than this GL draws ({} px): cut the wall into smaller tiles",
-            width_, height_, largest);
-    RETURN_IF_ERROR(makeFramebuffers());
+Result<void> GlRenderer::prepare(std::span<const PixelRect> tiles) {
+    RETURN_IF_ERROR(prepareBlocks(tiles));
     RETURN_IF_ERROR(lines_.prepare());
     RETURN_IF_ERROR(compileVisibilityPrograms(visibilityPrograms_, look_.overdraw));
     for (const bool wide : {false, true}) vertexArrays_[wide] = makeVertexArray(wide ? 3 : 2);
@@ -138,36 +115,24 @@ Result<void> GlRenderer::setLook(const SceneLook& look) {
     return compileVisibilityPrograms(visibilityPrograms_, look_.overdraw);
 }
 
-Result<void> GlRenderer::makeFramebuffers() {
-    int blockWidth = 0, blockHeight = 0;
-    for (const Block& block : blocksOf(tile_)) {
-        blockWidth = std::max(blockWidth, block.part.x + block.part.width - block.x);
-        blockHeight = std::max(blockHeight, block.part.y + block.part.height - block.y);
-    }
-    RETURN_IF_ERROR(visible_.prepare(blockWidth, blockHeight));
+Result<void> GlRenderer::prepareBlocks(std::span<const PixelRect> tiles) {
+    int width = 0, height = 0;
+    for (const PixelRect& tile : tiles)
+        for (const Block& block : blocksOf(tile)) {
+            width = std::max(width, block.part.x + block.part.width - block.x);
+            height = std::max(height, block.part.y + block.part.height - block.y);
+        }
+    RETURN_IF_ERROR(visible_.prepare(width, height));
     visible_.setCounts(look_.overdraw);
-    color_ = makeTexture(GL_RGBA8, width_, height_);
-    glCreateFramebuffers(1, &framebuffer_);
-    glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, color_, 0);
-    if (glCheckNamedFramebufferStatus(framebuffer_, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return fail("this GL cannot draw {}x{} px", width_, height_);
     return {};
 }
 
-void GlRenderer::beginFrame(const TileView& view) {
-    CHECK(view.tile == tile_);
+void GlRenderer::beginFrame(const TileView& view, TilePixels& pixels) {
+    CHECK_OP(view.tile.width, ==, pixels.width());
+    CHECK_OP(view.tile.height, ==, pixels.height());
     view_ = view;
-    if (view.captureDepth && captureFramebuffer_ == 0) addDepthTarget();
-    shaded_ = view.captureDepth ? captureFramebuffer_ : framebuffer_;
-
-    const auto channel = [&](int shift) {
-        return static_cast<float>((look_.background >> shift) & 255) / 255;
-    };
-    const float background[] = {channel(16), channel(8), channel(0), 1};
-    const float nothing[] = {0, 0, 0, 0};
-    glDisable(GL_SCISSOR_TEST);
-    glClearNamedFramebufferfv(shaded_, GL_COLOR, 0, background);
-    if (view.captureDepth) glClearNamedFramebufferfv(shaded_, GL_COLOR, 1, nothing);
+    pixels_ = &pixels;
+    pixels.clear(look_.background, view.captureDepth);
 }
 
 void GlRenderer::beginBlock(const Block& block) {
@@ -178,16 +143,6 @@ void GlRenderer::beginBlock(const Block& block) {
     unshaded_ = 0;
     glDisable(GL_SCISSOR_TEST);
     visible_.clear();
-}
-
-// Frames whose depth is wanted have a framebuffer of their own.
-void GlRenderer::addDepthTarget() {
-    eyeDepth_ = makeTexture(GL_R32F, width_, height_);
-    glCreateFramebuffers(1, &captureFramebuffer_);
-    glNamedFramebufferTexture(captureFramebuffer_, GL_COLOR_ATTACHMENT0, color_, 0);
-    glNamedFramebufferTexture(captureFramebuffer_, GL_COLOR_ATTACHMENT1, eyeDepth_, 0);
-    const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    glNamedFramebufferDrawBuffers(captureFramebuffer_, 2, targets);
 }
 
 void GlRenderer::useVisibilityProgram(bool wide) {
@@ -306,7 +261,8 @@ void GlRenderer::bindPicture(GLuint framebuffer) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_SCISSOR_TEST);
-    glScissor(block_.part.x - tile_.x, block_.part.y - tile_.y, block_.part.width, block_.part.height);
+    glScissor(block_.part.x - view_.tile.x, block_.part.y - view_.tile.y, block_.part.width,
+              block_.part.height);
     visible_.bindForShading();
 }
 
@@ -316,8 +272,8 @@ void GlRenderer::shade() {
     if (unshaded_ == slots_.size()) return;
     glNamedBufferSubData(pagesBuffer_, 0, static_cast<GLsizeiptr>(slots_.size() * sizeof(ShadedPage)),
                          slots_.data());
-    bindPicture(shaded_);
-    glViewport(0, 0, width_, height_);
+    bindPicture(pixels_->framebuffer());
+    glViewport(0, 0, pixels_->width(), pixels_->height());
     glBindVertexArray(emptyArray_);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kPagesBinding, pagesBuffer_);
     if (look_.tints) {
@@ -342,10 +298,10 @@ void GlRenderer::shade() {
 }
 
 void GlRenderer::drawLines(std::span<const Line> lines) {
-    bindPicture(framebuffer_);
+    bindPicture(pixels_->colorFramebuffer());
     lines_.use();
-    useView(tile_.x, tile_.y);
-    glUniform2i(kInBlock, tile_.x - block_.x, tile_.y - block_.y);
+    useView(view_.tile.x, view_.tile.y);
+    glUniform2i(kInBlock, view_.tile.x - block_.x, view_.tile.y - block_.y);
     lines_.draw(lines);
     glDisable(GL_SCISSOR_TEST);
     used_ = 0;
@@ -362,8 +318,8 @@ void GlRenderer::useShadingProgram() {
     glUniformMatrix3fv(kToPixels, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toPixels)));
     glUniformMatrix3fv(kToDirection, 1, GL_FALSE, glm::value_ptr(glm::mat3(view_.projection.toDirection)));
     glUniform1f(kNear, static_cast<float>(view_.near));
-    glUniform2f(kTileOrigin, static_cast<float>(tile_.x), static_cast<float>(tile_.y));
-    glUniform2i(kInBlock, tile_.x - block_.x, tile_.y - block_.y);
+    glUniform2f(kTileOrigin, static_cast<float>(view_.tile.x), static_cast<float>(view_.tile.y));
+    glUniform2i(kInBlock, view_.tile.x - block_.x, view_.tile.y - block_.y);
     if (variant & kShadeDepth)
         glUniform1f(kStepSize, static_cast<float>(std::ldexp(1.0, look_.stepExponent)));
     if (variant & kShadeRamp) {
@@ -372,27 +328,11 @@ void GlRenderer::useShadingProgram() {
     }
 }
 
-ColorImage GlRenderer::readColor() {
-    ColorImage image(width_, height_, 3);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
-    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());
-    return image;
-}
-
-DepthImage GlRenderer::readDepth() {
-    CHECK(view_.captureDepth);
-    DepthImage image(width_, height_, 1);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, captureFramebuffer_);
-    glReadBuffer(GL_COLOR_ATTACHMENT1);
-    glReadPixels(0, 0, width_, height_, GL_RED, GL_FLOAT, image.pixels.data());
-    return image;
-}
-
 }  // namespace
 
-Result<std::unique_ptr<Renderer>> Renderer::create(const PixelRect& tile, const SceneLook& look) {
-    auto renderer = std::make_unique<GlRenderer>(tile, look);
-    RETURN_IF_ERROR(renderer->prepare());
+Result<std::unique_ptr<Renderer>> Renderer::create(std::span<const PixelRect> tiles, const SceneLook& look) {
+    auto renderer = std::make_unique<GlRenderer>(look);
+    RETURN_IF_ERROR(renderer->prepare(tiles));
     return std::unique_ptr<Renderer>(std::move(renderer));
 }
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "common/dataset/hierarchy.hpp"
-#include "common/image.hpp"
 #include "common/settings.hpp"
 #include "server/cache/page_cache.hpp"
 #include "server/draw/blocks.hpp"
 #include "server/draw/lines.hpp"
+#include "server/draw/tile_pixels.hpp"
 #include "server/draw/tints.hpp"
 #include "server/visibility/frustum_visibility.hpp"
 
@@ -37,16 +37,16 @@ struct TileView {
     PixelRect tile;                         // px of the screen
     LatticeEye eye;
     double near = 0;            // steps
-    bool captureDepth = false;  // readDepth() will be asked for
+    bool captureDepth = false;  // the frame is to have it, too
 };
 
-// Draws ranges of resident pages into an own framebuffer: reversed-Z 32-bit float depth with an infinite far
-// plane, a visibility buffer, and RGBA8 colour that each pixel gets when finish() is called. Needs a current
-// GL context, on whose thread everything but the arena's memory stays.
+// Draws ranges of resident pages into a visibility buffer with reversed-Z 32-bit float depth and an infinite
+// far plane; the tile's pixels get their colours when finish() is called. One serves all tiles of a rank, one
+// after another. Needs a current GL context, on whose thread everything but the arena's memory stays.
 class Renderer {
   public:
-    // `tile`: px of the screen; every view's must be the same.
-    static Result<std::unique_ptr<Renderer>> create(const PixelRect& tile, const SceneLook& look);
+    // `tiles`: px of their screens; every view's must be among them.
+    static Result<std::unique_ptr<Renderer>> create(std::span<const PixelRect> tiles, const SceneLook& look);
     virtual ~Renderer() = default;
 
     // Between frames: another look of the same dataset.
@@ -57,7 +57,8 @@ class Renderer {
     static constexpr std::uint64_t kArenaAlignment = 256;
     virtual Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) = 0;
 
-    virtual void beginFrame(const TileView& view) = 0;
+    // `pixels`, of the tile's size, are kept by reference until the next frame.
+    virtual void beginFrame(const TileView& view, TilePixels& pixels) = 0;
     // What draw() is given from here to finish() shows in this block of the tile only. All blocks make a
     // frame.
     virtual void beginBlock(const Block& block) = 0;
@@ -84,14 +85,8 @@ class Renderer {
     // Makes the block's part GL's viewport, for others to test boxes against its depth; likewise.
     virtual glm::ivec2 bindBlock() = 0;
 
-    virtual ColorImage readColor() = 0;
-    virtual std::uint32_t colorTexture() const = 0;  // GL's, RGBA8, row 0 on top
-    // The frame's colours at this size, or its own where that is less.
-    virtual ColorImage readSmall(int width, int height) = 0;
     // Appends the window depths of the block's pixels, of a row here and there.
     virtual void sampleBlockDepths(std::vector<float>& depths) = 0;
-    // Eye-space depth in model units, 0 where there is no surface; of a frame with captureDepth.
-    virtual DepthImage readDepth() = 0;
 };
 
 }  // namespace iwalk

@@ -41,10 +41,7 @@ Result<void> VisibilityBuffer::prepare(int width, int height) {
 
 void VisibilityBuffer::setCounts(bool counts) {
     glDeleteTextures(1, &counts_);
-    counts_ = 0;
-    if (!counts) return;
-    counts_ = makeTexture(GL_R32UI, width_, height_);
-    glBindImageTexture(kCountsBinding, counts_, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+    counts_ = counts ? makeTexture(GL_R32UI, width_, height_) : 0;
 }
 
 Result<void> VisibilityBuffer::prepare(Layer& layer, int width, int height) {
@@ -60,7 +57,10 @@ Result<void> VisibilityBuffer::prepare(Layer& layer, int width, int height) {
 
 void VisibilityBuffer::clear() {
     rest_ = false;
-    if (counts_ != 0) glClearTexImage(counts_, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    if (counts_ != 0) {
+        glClearTexImage(counts_, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+        glBindImageTexture(kCountsBinding, counts_, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+    }
     glClearNamedFramebufferuiv(layers_[0].framebuffer, GL_COLOR, 0, kNobody);
     glClearNamedFramebufferfv(layers_[0].framebuffer, GL_DEPTH, 0, kInfinitelyFar);
 }

@@ -51,35 +51,35 @@ void addFrustum(const TileView& view, const LatticeEye& from, double depth, std:
 
 }  // namespace
 
-void BirdsEye::draw(const TileView& view, const glm::dvec3& up, const Cut& cut,
+void BirdsEye::draw(const TileView& view, const glm::dvec3& up,
                     const std::vector<PageDrawing::Drawn>& drawn) {
     const TileView from = above(view, up);
     std::vector<VisibleRanges> ranges;
     for (const PageDrawing::Drawn& d : drawn) ranges.push_back({d.page, d.range, 1});
     ranges = joined(std::move(ranges));
-    visibility_.sortFrontToBack(ranges, from.eye);
+    scene_.visibility.sortFrontToBack(ranges, from.eye);
 
-    std::vector<Line> lines = boxes(view, from.eye, cut, drawn);
-    const LatticeBox model = Hierarchy::box(hierarchy_.nodes[0]);
+    std::vector<Line> lines = boxes(view, from.eye, drawn);
+    const LatticeBox model = Hierarchy::box(scene_.dataset.hierarchy.nodes[0]);
     addBox(from.eye, model, kModel, lines);
     addFrustum(view, from.eye, 0.3 * glm::distance(from.eye.to(model.min), from.eye.to(model.max)), lines);
 
-    renderer_.beginFrame(from);
+    scene_.renderer->beginFrame(from, pixels_);
     protocol::TileStats notOfTheFrame;
     for (const Block& block : blocksOf(from.tile)) {
         const BlockView part(from, block);
-        cache_.beginFrame(pagesOf(ranges));
-        renderer_.beginBlock(block);
-        pages_.drawAll(part, ranges, notOfTheFrame);
-        renderer_.finish();
-        renderer_.drawLines(lines);
-        cache_.release();
+        scene_.cache->beginFrame(pagesOf(ranges));
+        scene_.renderer->beginBlock(block);
+        scene_.pages->drawAll(part, ranges, notOfTheFrame);
+        scene_.renderer->finish();
+        scene_.renderer->drawLines(lines);
+        scene_.cache->release();
     }
 }
 
 // The whole model, and the eye where it is not too far from it, on the whole tile.
 TileView BirdsEye::above(const TileView& view, const glm::dvec3& up) const {
-    const LatticeBox model = Hierarchy::box(hierarchy_.nodes[0]);
+    const LatticeBox model = Hierarchy::box(scene_.dataset.hierarchy.nodes[0]);
     glm::dvec3 low = view.eye.to(model.min), high = view.eye.to(model.max);  // from the tile's eye
     const double size = glm::distance(low, high);
     if (glm::length(low + high) / 2 < 1.5 * size) low = glm::min(low, 0.0), high = glm::max(high, 0.0);
@@ -110,18 +110,18 @@ TileView BirdsEye::above(const TileView& view, const glm::dvec3& up) const {
     return from;
 }
 
-std::vector<Line> BirdsEye::boxes(const TileView& view, const LatticeEye& from, const Cut& cut,
+std::vector<Line> BirdsEye::boxes(const TileView& view, const LatticeEye& from,
                                   const std::vector<PageDrawing::Drawn>& drawn) const {
     std::map<std::uint32_t, bool> read;  // by page that was drawn
     for (const PageDrawing::Drawn& d : drawn) read[d.page] |= d.fetched;
     const Frustum frustum = frustumOf(view.projection, view.tile, 1, view.near);
     std::vector<Line> leftOut, lines;
-    for (const std::uint32_t page : pagesOf(visibility_.visible(cut, frustum, view.eye))) {
+    for (const std::uint32_t page : pagesOf(scene_.visibility.visible(scene_.cut, frustum, view.eye))) {
         const auto found = read.find(page);
         if (found == read.end())
-            addBox(from, visibility_.pageBox(page), kLeftOut, leftOut);
+            addBox(from, scene_.visibility.pageBox(page), kLeftOut, leftOut);
         else
-            addBox(from, visibility_.pageBox(page), found->second ? kRead : kDrawn, lines);
+            addBox(from, scene_.visibility.pageBox(page), found->second ? kRead : kDrawn, lines);
     }
     leftOut.insert(leftOut.end(), lines.begin(), lines.end());  // what is drawn comes over what is not
     return leftOut;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "server/frame/page_drawing.hpp"
+#include "server/frame/scene.hpp"
 
 namespace iwalk {
 
@@ -11,25 +11,19 @@ namespace iwalk {
 // was drawn, red those that were read for it, blue those that were left out.
 class BirdsEye {
   public:
-    // All outlive it.
-    BirdsEye(const Hierarchy& hierarchy, const FrustumVisibility& visibility, PageCache& cache,
-             Renderer& renderer, PageDrawing& pages)
-        : hierarchy_(hierarchy), visibility_(visibility), cache_(cache), renderer_(renderer), pages_(pages) {}
+    // Both outlive it.
+    BirdsEye(Scene& scene, TilePixels& pixels) : scene_(scene), pixels_(pixels) {}
 
     // Draws over the frame. `up`: the camera's; `drawn`: what PageDrawing has noted.
-    void draw(const TileView& view, const glm::dvec3& up, const Cut& cut,
-              const std::vector<PageDrawing::Drawn>& drawn);
+    void draw(const TileView& view, const glm::dvec3& up, const std::vector<PageDrawing::Drawn>& drawn);
 
   private:
     TileView above(const TileView& view, const glm::dvec3& up) const;
-    std::vector<Line> boxes(const TileView& view, const LatticeEye& from, const Cut& cut,
+    std::vector<Line> boxes(const TileView& view, const LatticeEye& from,
                             const std::vector<PageDrawing::Drawn>& drawn) const;
 
-    const Hierarchy& hierarchy_;
-    const FrustumVisibility& visibility_;
-    PageCache& cache_;
-    Renderer& renderer_;
-    PageDrawing& pages_;
+    Scene& scene_;
+    TilePixels& pixels_;
 };
 
 }  // namespace iwalk

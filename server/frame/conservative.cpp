@@ -111,7 +111,7 @@ void ConservativeDrawing::draw(const PageDrawing::Page& page, protocol::TileStat
 void ConservativeDrawing::look(protocol::TileStats& stats) {
     renderer_.wait();
     Stopwatch watch;
-    occlusion_->update();
+    occlusion_.update();
     stats.pyramidMs += watch.lap();
 }
 
@@ -143,7 +143,7 @@ void ConservativeDrawing::hidePages(const BlockView& view, std::vector<VisibleRa
         const LatticeBox& box = visibility_.pageBox(open[i].page);
         boxes_.push_back(view.boxes.of(view.eye.to(box.min), view.eye.to(box.max)));
     }
-    occlusion_->hidden(boxes_, hidden_);
+    occlusion_.hidden(boxes_, hidden_);
     std::size_t kept = from;
     for (std::size_t i = from; i < open.size(); ++i) {
         if (hidden_[i - from])
@@ -185,7 +185,7 @@ void ConservativeDrawing::drawOpen(std::vector<PageDrawing::Page>& open, protoco
     boxes_.clear();
     for (const PageDrawing::Page& page : open)
         for (const DrawnRange& range : page.ranges) boxes_.push_back(range.box);
-    occlusion_->hidden(boxes_, hidden_);
+    occlusion_.hidden(boxes_, hidden_);
     auto answer = hidden_.begin();
     for (PageDrawing::Page& page : open)
         stats.hiddenRanges += std::erase_if(page.ranges, [&](const DrawnRange& range) {

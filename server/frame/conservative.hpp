@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <memory>
 #include <utility>
 
 #include "server/draw/occlusion.hpp"
@@ -23,13 +22,13 @@ class ConservativeDrawing {
 
     // All outlive it.
     ConservativeDrawing(const FrustumVisibility& visibility, PageCache& cache, Renderer& renderer,
-                        PageDrawing& pages, std::unique_ptr<Occlusion> occlusion, double costOfLooking)
+                        PageDrawing& pages, Occlusion& occlusion, double costOfLooking)
         : costOfLooking_(costOfLooking),
           visibility_(visibility),
           cache_(cache),
           renderer_(renderer),
           pages_(pages),
-          occlusion_(std::move(occlusion)) {}
+          occlusion_(occlusion) {}
 
     // From beginning the block to its pixels. `candidates`: everything in the block's frustum, from near to
     // far.
@@ -69,7 +68,7 @@ class ConservativeDrawing {
     PageCache& cache_;
     Renderer& renderer_;
     PageDrawing& pages_;
-    const std::unique_ptr<Occlusion> occlusion_;
+    Occlusion& occlusion_;
 
     std::map<std::pair<int, int>, Memory> memories_;  // by the block's corner
     Memory* memory_ = nullptr;                        // of the block

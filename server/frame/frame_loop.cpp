@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -39,11 +40,13 @@ class FrameLoop {
     FrameState stateOf(const protocol::CameraRequest& request);
     bool previewDue();
     void sendPreview();
+    void sendPreview(std::size_t tile, double scale);
     void takePicture(protocol::TileImage picture);
     std::optional<protocol::CameraRequest> nextRequest();
     void drawFrame(const FrameState& state);
-    void present(const FrameState& state);
-    void report(const FrameState& state, protocol::TileStats stats, Clock::time_point swap);
+    void present(const FrameState& state, std::size_t tile);
+    void report(const FrameState& state, const std::vector<protocol::TileStats>& stats,
+                Clock::time_point swap);
     void idle();
     void passCapturesOn();
 
@@ -141,43 +144,50 @@ FrameState FrameLoop::stateOf(const protocol::CameraRequest& request) {
 
 void FrameLoop::drawFrame(const FrameState& state) {
     if (state.settings != settings_) {
-        const Result<void> applied = parts_.pipeline.apply(state.settings);
+        const Result<void> applied = parts_.tiles.apply(state.settings);
         if (!applied) detail::checkFailed(__FILE__, __LINE__, applied.error().message);
         settings_ = state.settings;
     }
-    protocol::TileStats stats = parts_.pipeline.draw(state);
-    parts_.output.prepare(parts_.pipeline.renderer().colorTexture());
-    stats.barrierWaitMs = parts_.sync.barrier();
-    parts_.output.show();
+    std::vector<protocol::TileStats> stats;
+    for (std::size_t i = 0; i < parts_.tiles.size(); ++i) {
+        stats.push_back(parts_.tiles[i].draw(state));
+        parts_.outputs[i]->prepare(parts_.tiles[i].pixels().colorTexture());
+    }
+    const double waitedMs = parts_.sync.barrier();
+    for (protocol::TileStats& tile : stats) tile.barrierWaitMs = waitedMs;
+    for (const std::unique_ptr<TileOutput>& output : parts_.outputs) output->show();
     const Clock::time_point swap = Clock::now();
-    present(state);
+    for (std::size_t i = 0; i < parts_.tiles.size(); ++i) present(state, i);
     report(state, stats, swap);
     if (state.flags & FrameState::kPreview) sendPreview();
     ++frame_;
 }
 
 // Files are what is shown, captures what was drawn: the same but for projectors' blending.
-void FrameLoop::present(const FrameState& state) {
+void FrameLoop::present(const FrameState& state, std::size_t tile) {
     TilePicture picture;
     picture.frame = state.frame;
     if (!parts_.outputDirectory.empty()) {
-        picture.file = tileFile(parts_.outputDirectory, state.frame, parts_.tileName);
-        picture.color = parts_.output.read();
+        picture.file =
+            tileFile(parts_.outputDirectory, state.frame, parts_.wall.tiles[parts_.numbers[tile]].name);
+        picture.color = parts_.outputs[tile]->read();
         writer_.put(picture);
     }
     if (!(state.flags & (protocol::kCaptureColor | protocol::kCaptureDepth))) return;
     picture.file.clear();
     picture.capture = true;
     picture.sequence = state.sequence;
-    picture.tile = static_cast<std::uint32_t>(parts_.sync.rank());
-    picture.color = parts_.pipeline.renderer().readColor();
-    if (state.flags & protocol::kCaptureDepth) picture.depth = parts_.pipeline.renderer().readDepth();
+    picture.tile = static_cast<std::uint32_t>(parts_.numbers[tile]);
+    picture.color = parts_.tiles[tile].pixels().readColor();
+    if (state.flags & protocol::kCaptureDepth) picture.depth = parts_.tiles[tile].pixels().readDepth();
     writer_.put(std::move(picture));
 }
 
-void FrameLoop::report(const FrameState& state, protocol::TileStats stats, Clock::time_point swap) {
+void FrameLoop::report(const FrameState& state, const std::vector<protocol::TileStats>& stats,
+                       Clock::time_point swap) {
     std::vector<protocol::TileStats> all = parts_.sync.gather(stats);
     if (parts_.gateway) {
+        std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.tile < b.tile; });
         protocol::FrameDone done;
         done.sequence = state.sequence;
         done.frame = state.frame;
@@ -193,7 +203,8 @@ void FrameLoop::report(const FrameState& state, protocol::TileStats stats, Clock
 // Whenever a wait leaves time.
 void FrameLoop::idle() {
     passCapturesOn();
-    if (parts_.output.closed()) parts_.sync.askToStop();
+    for (const std::unique_ptr<TileOutput>& output : parts_.outputs)
+        if (output->closed()) parts_.sync.askToStop();
 }
 
 // Captures go from this rank's writer to rank 0, and from there through the gateway.
@@ -217,22 +228,26 @@ bool FrameLoop::previewDue() {
     joined_ = wish.joined;
     const auto now = Clock::now();
     if (!wish.wanted || !previews_.due(now, next_.previewFps)) return false;
-    previews_.begin(now, static_cast<std::size_t>(parts_.sync.size()));
+    previews_.begin(now, parts_.wall.tiles.size());
     return true;
 }
 
-// Read back small and compressed here: it takes less time than handing the large one to another thread.
 void FrameLoop::sendPreview() {
-    const Tile& tile = parts_.wall.tiles[static_cast<std::size_t>(parts_.sync.rank())];
     const double scale = previewScale(parts_.wall, settings_.previewSize);
+    for (std::size_t i = 0; i < parts_.tiles.size(); ++i) sendPreview(i, scale);
+    ++preview_;
+}
+
+// Read back small and compressed here: it takes less time than handing the large one to another thread.
+void FrameLoop::sendPreview(std::size_t tile, double scale) {
+    const PixelRect& place = parts_.wall.tiles[parts_.numbers[tile]].onWall;
     const auto pixels = [&](int length) {
         return std::max(1, static_cast<int>(std::lround(scale * length)));
     };
-    const ColorImage small =
-        parts_.pipeline.renderer().readSmall(pixels(tile.onWall.width), pixels(tile.onWall.height));
+    const ColorImage small = parts_.tiles[tile].pixels().readSmall(pixels(place.width), pixels(place.height));
     Result<std::vector<std::byte>> bytes = encodeJpeg(small);
     if (!bytes) spdlog::error("no preview: {}", bytes.error().message);
-    parts_.sync.sendToRank0({preview_++, static_cast<std::uint32_t>(parts_.sync.rank()),
+    parts_.sync.sendToRank0({preview_, static_cast<std::uint32_t>(parts_.numbers[tile]),
                              protocol::ImageKind::preview,
                              bytes ? std::move(*bytes) : std::vector<std::byte>()});
 }

@@ -30,13 +30,14 @@ Result<void> write(const std::string& file, const ColorImage& picture) {
 
 // Until somebody closes a window, or rank 0 is told to stop.
 void stay(const PatternWallParts& parts) {
-    const auto lookAfterWindow = [&] {
-        if (parts.output.closed()) parts.sync.askToStop();
+    const auto lookAfterWindows = [&] {
+        for (const PatternTile& tile : parts.tiles)
+            if (tile.output.closed()) parts.sync.askToStop();
     };
-    parts.sync.setIdleWork(lookAfterWindow);
+    parts.sync.setIdleWork(lookAfterWindows);
     if (parts.sync.rank() == 0)
         while (!parts.stop && !parts.sync.askedToStop()) {
-            lookAfterWindow();
+            lookAfterWindows();
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
     FrameState state;
@@ -48,12 +49,12 @@ void stay(const PatternWallParts& parts) {
 }  // namespace
 
 Result<void> showPattern(const PatternWallParts& parts) {
-    const GLuint texture = upload(parts.picture);
-    parts.output.prepare(texture);
+    for (const PatternTile& tile : parts.tiles) tile.output.prepare(upload(tile.picture));
     parts.sync.barrier();
-    parts.output.show();
-    if (!parts.file.empty()) return write(parts.file, parts.output.read());
-    stay(parts);
+    for (const PatternTile& tile : parts.tiles) tile.output.show();
+    for (const PatternTile& tile : parts.tiles)
+        if (!tile.file.empty()) RETURN_IF_ERROR(write(tile.file, tile.output.read()));
+    if (parts.tiles.at(0).file.empty()) stay(parts);
     return {};
 }
 

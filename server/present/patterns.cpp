@@ -189,7 +189,7 @@ void drawBlend(const Tile& tile, int wallHeight, TileCanvas& canvas) {
     canvas.text(canvas.middleX(), std::min(y + height, wallHeight) - 24, 2, tile.name, kWhite);
 }
 
-void drawIdentity(const Wall& wall, std::size_t number, const std::string& host, TileCanvas& canvas) {
+void drawIdentity(const Wall& wall, std::size_t number, const DrawnBy& by, TileCanvas& canvas) {
     const Tile& tile = wall.tiles[number];
     const PixelRect& rect = canvas.rect();
     const Color colors[] = {
@@ -210,8 +210,8 @@ void drawIdentity(const Wall& wall, std::size_t number, const std::string& host,
         y += (kLetterHeight + 3) * scale;
     };
     line(tile.name, 6 * unit, kWhite);
-    line(fmt::format("rank {} of {}", number, wall.tiles.size()), 3 * unit, kYellow);
-    line(fmt::format("on {}", host), 2 * unit, kWhite);
+    line(fmt::format("rank {} of {}", by.rank, by.ranks), 3 * unit, kYellow);
+    line(fmt::format("on {}", by.host), 2 * unit, kWhite);
     line(fmt::format("{} x {} px", rect.width, rect.height), 2 * unit, kWhite);
     if (!tile.display.empty()) line(fmt::format("display {}", tile.display), 2 * unit, kWhite);
     if (!tile.monitor.empty()) line(fmt::format("monitor {}", tile.monitor), 2 * unit, kWhite);
@@ -219,12 +219,12 @@ void drawIdentity(const Wall& wall, std::size_t number, const std::string& host,
 
 }  // namespace
 
-ColorImage drawPattern(Pattern pattern, const Wall& wall, std::size_t tile, const std::string& host) {
+ColorImage drawPattern(Pattern pattern, const Wall& wall, std::size_t tile, const DrawnBy& by) {
     TileCanvas canvas(wall.tiles[tile].onScreen, kBlack);
     if (pattern == Pattern::grid) drawGrid(wall, wall.tiles[tile], canvas);
     if (pattern == Pattern::blend)
         drawBlend(wall.tiles[tile], wall.screens(60)[wall.tiles[tile].screen].height, canvas);
-    if (pattern == Pattern::identity) drawIdentity(wall, tile, host, canvas);
+    if (pattern == Pattern::identity) drawIdentity(wall, tile, by, canvas);
     return canvas.image();
 }
 

@@ -16,7 +16,13 @@ namespace iwalk {
 //   identity  each tile's name, rank, host and size, and which way is up
 enum class Pattern { none, grid, blend, identity };
 
-// One tile's part. `host`: where its server runs.
-ColorImage drawPattern(Pattern pattern, const Wall& wall, std::size_t tile, const std::string& host);
+// The server that draws a tile.
+struct DrawnBy {
+    int rank = 0, ranks = 1;
+    std::string host;
+};
+
+// One tile's part.
+ColorImage drawPattern(Pattern pattern, const Wall& wall, std::size_t tile, const DrawnBy& by);
 
 }  // namespace iwalk

@@ -22,17 +22,17 @@ Result<std::unique_ptr<TileOutput>> TileOutput::create(const Tile& tile, WallWin
 }
 
 void TileOutput::prepare(std::uint32_t drawn) {
-    const GLuint shown = blend_ ? blend_->apply(drawn) : drawn;
-    glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, shown, 0);
+    shown_ = blend_ ? blend_->apply(drawn) : drawn;
     glFinish();  // what is left to do after the barrier is the same short work for all
 }
 
 void TileOutput::show() {
-    if (window_) window_->show(framebuffer_);
+    if (window_) window_->show(shown_);
 }
 
 ColorImage TileOutput::read() const {
     ColorImage image(width_, height_, 3);
+    glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, shown_, 0);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());

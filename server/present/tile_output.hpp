@@ -11,7 +11,7 @@
 namespace iwalk {
 
 // The way of a tile's finished pixels to people's eyes: blended where projectors overlap, into a window if
-// there is one. Needs a current GL context, the window's if there is one.
+// there is one. Needs the current GL context that draws.
 class TileOutput {
   public:
     // `window`: kept by reference; null: nothing is shown, only read.
@@ -35,8 +35,8 @@ class TileOutput {
 
     const int width_, height_;  // px
     WallWindow* const window_;
-    std::unique_ptr<BlendPass> blend_;  // null: no overlap
-    std::uint32_t framebuffer_ = 0;     // GL's, with what is shown
+    std::unique_ptr<BlendPass> blend_;           // null: no overlap
+    std::uint32_t framebuffer_ = 0, shown_ = 0;  // GL's: to read what is shown, and the texture that is
 };
 
 }  // namespace iwalk

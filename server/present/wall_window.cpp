@@ -1,4 +1,4 @@
-// A GLFW window. Its GL context comes from GLX: NV_swap_group is GLX's.
+// GLFW windows. Their GL contexts come from GLX: NV_swap_group is GLX's.
 
 #include "server/present/wall_window.hpp"
 
@@ -26,16 +26,29 @@ std::string glfwReason() {
     return reason ? reason : "no reason given";
 }
 
+// GLFW, which opens one display in a process.
+class Glfw {
+  public:
+    ~Glfw() { glfwTerminate(); }
+    Result<void> open() {
+        if (glfwInit()) return {};
+        return fail("cannot open the X display {}: {}; set DISPLAY, or 'display' in the wall file",
+                    displayName(), glfwReason());
+    }
+};
+
 class GlfwWindow : public WallWindow, public SwapGroupDriver {
   public:
-    explicit GlfwWindow(const Tile& tile) : width_(tile.onScreen.width), height_(tile.onScreen.height) {}
+    // `drawing`: the window whose context draws; null: this one's does.
+    GlfwWindow(const Tile& tile, GLFWwindow* drawing)
+        : width_(tile.onScreen.width), height_(tile.onScreen.height), drawing_(drawing) {}
     ~GlfwWindow() override {
         if (window_) glfwDestroyWindow(window_);
-        glfwTerminate();
     }
     Result<void> open(const Tile& tile, const glm::ivec2& place);
+    GLFWwindow* handle() const { return window_; }
 
-    void show(std::uint32_t framebuffer) override;
+    void show(std::uint32_t texture) override;
     bool closed() override;
     SwapGroupDriver& swapGroupDriver() override { return *this; }
     bool join() override;
@@ -46,7 +59,9 @@ class GlfwWindow : public WallWindow, public SwapGroupDriver {
     Result<void> checkSize() const;
 
     const int width_, height_;  // px
+    GLFWwindow* const drawing_;
     GLFWwindow* window_ = nullptr;
+    GLuint framebuffer_ = 0;  // of the window's context, and gone with it
     GLuint shown_ = 0;
     bool lost_ = false;     // the display has forgotten some of the picture
     bool grouped_ = false;  // a swap waits for all others
@@ -82,9 +97,6 @@ Result<void> GlfwWindow::checkSize() const {
 }
 
 Result<void> GlfwWindow::open(const Tile& tile, const glm::ivec2& place) {
-    if (!glfwInit())
-        return fail("cannot open the X display {}: {}; set DISPLAY, or 'display' in the wall file",
-                    displayName(), glfwReason());
     GLFWmonitor* monitor = nullptr;
     if (!tile.monitor.empty()) {
         ASSIGN_OR_RETURN(monitor, monitorNamed(tile.monitor));
@@ -100,10 +112,11 @@ Result<void> GlfwWindow::open(const Tile& tile, const glm::ivec2& place) {
                                          {GLFW_STENCIL_BITS, 0},
                                          {GLFW_ALPHA_BITS, 0}};
     for (const auto& [hint, value] : hints) glfwWindowHint(hint, value);
-    window_ = glfwCreateWindow(width_, height_, tile.name.c_str(), monitor, nullptr);
+    window_ = glfwCreateWindow(width_, height_, tile.name.c_str(), monitor, drawing_);
     if (!window_) return fail("display {} gives no window with OpenGL 4.5: {}", displayName(), glfwReason());
     glfwMakeContextCurrent(window_);
-    glfwSwapInterval(1);  // no picture changes while the screen is drawn
+    // The first of a rank waits for the refresh, so that no picture changes while the screen is drawn.
+    glfwSwapInterval(drawing_ ? 0 : 1);
     glfwSetWindowUserPointer(window_, this);
     glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) {
         static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->lost_ = true;
@@ -114,17 +127,23 @@ Result<void> GlfwWindow::open(const Tile& tile, const glm::ivec2& place) {
     glfwShowWindow(window_);
     glfwPollEvents();
     RETURN_IF_ERROR(checkSize());
+    glCreateFramebuffers(1, &framebuffer_);
     glClear(GL_COLOR_BUFFER_BIT);
     glfwSwapBuffers(window_);
+    if (drawing_) glfwMakeContextCurrent(drawing_);
     return {};
 }
 
-void GlfwWindow::show(std::uint32_t framebuffer) {
-    shown_ = framebuffer;
+// What was drawn is finished. Attaching the texture anew lets another context see what has become of it.
+void GlfwWindow::show(std::uint32_t texture) {
+    shown_ = texture;
+    if (drawing_) glfwMakeContextCurrent(window_);
+    glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, texture, 0);
     glDisable(GL_SCISSOR_TEST);
-    glBlitNamedFramebuffer(framebuffer, 0, 0, 0, width_, height_, 0, height_, width_, 0, GL_COLOR_BUFFER_BIT,
+    glBlitNamedFramebuffer(framebuffer_, 0, 0, 0, width_, height_, 0, height_, width_, 0, GL_COLOR_BUFFER_BIT,
                            GL_NEAREST);
     glfwSwapBuffers(window_);
+    if (drawing_) glfwMakeContextCurrent(drawing_);
 }
 
 bool GlfwWindow::closed() {
@@ -151,13 +170,50 @@ void GlfwWindow::leave() {
     glXJoinSwapGroupNV(display, glXGetCurrentDrawable(), 0);
 }
 
+class GlfwWindows : public WallWindows {
+  public:
+    Result<void> open(const std::vector<Place>& places);
+    WallWindow& window(std::size_t i) override { return *windows_[i]; }
+
+  private:
+    Glfw glfw_;  // outlives the windows
+    std::vector<std::unique_ptr<GlfwWindow>> windows_;
+};
+
+std::string displayOf(const Tile& tile) {
+    return wholeDisplayName(tile.display.empty() ? displayName() : tile.display);
+}
+
+Result<void> GlfwWindows::open(const std::vector<Place>& places) {
+    const Tile& first = places.at(0).tile;
+    for (const Place& place : places)
+        if (displayOf(place.tile) != displayOf(first))
+            return fail(
+                "tiles '{}' and '{}' belong to one rank, which has one X display, but are on {} and {}: "
+                "start a rank for each display",
+                first.name, place.tile.name, displayOf(first), displayOf(place.tile));
+    if (!first.display.empty()) setenv("DISPLAY", first.display.c_str(), 1);
+    RETURN_IF_ERROR(glfw_.open());
+    for (const Place& place : places) {
+        GLFWwindow* const drawing = windows_.empty() ? nullptr : windows_[0]->handle();
+        windows_.push_back(std::make_unique<GlfwWindow>(place.tile, drawing));
+        RETURN_IF_ERROR(windows_.back()->open(place.tile, place.at));
+    }
+    return {};
+}
+
 }  // namespace
 
-Result<std::unique_ptr<WallWindow>> WallWindow::open(const Tile& tile, const glm::ivec2& place) {
-    if (!tile.display.empty()) setenv("DISPLAY", tile.display.c_str(), 1);
-    auto window = std::make_unique<GlfwWindow>(tile);
-    RETURN_IF_ERROR(window->open(tile, place));
-    return std::unique_ptr<WallWindow>(std::move(window));
+std::string wholeDisplayName(const std::string& name) {
+    const std::size_t colon = name.rfind(':');
+    if (colon == std::string::npos || name.find('.', colon) != std::string::npos) return name;
+    return name + ".0";
+}
+
+Result<std::unique_ptr<WallWindows>> WallWindows::open(const std::vector<Place>& places) {
+    auto windows = std::make_unique<GlfwWindows>();
+    RETURN_IF_ERROR(windows->open(places));
+    return std::unique_ptr<WallWindows>(std::move(windows));
 }
 
 }  // namespace iwalk

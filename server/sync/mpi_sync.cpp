@@ -119,7 +119,7 @@ class MpiSync : public Sync {
     bool agree(bool mine) override;
     const std::vector<std::string>& hosts() const override { return hosts_; }
     std::vector<std::string> gatherText(const std::string& mine) override;
-    void renumber(int rank) override;
+    void renumber(int rank, std::vector<int> tiles) override;
 
     void askToStop() override;
     bool askedToStop() override;
@@ -140,14 +140,7 @@ class MpiSync : public Sync {
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     }
 
-    std::vector<protocol::TileStats> gather(const protocol::TileStats& mine) override {
-        std::vector<protocol::TileStats> all(rank_ == 0 ? static_cast<std::size_t>(size_) : 0);
-        MPI_Request request;
-        must(MPI_Igather(&mine, sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, 0, world_,
-                         &request));
-        finish(request);
-        return all;
-    }
+    std::vector<protocol::TileStats> gather(const std::vector<protocol::TileStats>& mine) override;
 
     void sendToRank0(protocol::TileImage tile) override;
     std::vector<protocol::TileImage> poll() override;
@@ -175,6 +168,7 @@ class MpiSync : public Sync {
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     std::vector<std::string> hosts_;  // by rank
+    std::vector<int> tiles_;          // likewise: how many it draws
     std::function<void()> idleWork_;
     std::list<Outgoing> outgoing_;          // a list: MPI reads the bytes where they are
     std::vector<protocol::TileImage> own_;  // rank 0's, which need no MPI
@@ -238,7 +232,9 @@ std::vector<std::string> MpiSync::gatherText(const std::string& mine) {
     return texts;
 }
 
-void MpiSync::renumber(int rank) {
+void MpiSync::renumber(int rank, std::vector<int> tiles) {
+    CHECK_OP(tiles.size(), ==, hosts_.size());
+    tiles_ = std::move(tiles);
     MPI_Comm renumbered = MPI_COMM_NULL;
     must(MPI_Comm_split(world_, 0, rank, &renumbered));
     must(MPI_Comm_free(&world_));
@@ -246,6 +242,27 @@ void MpiSync::renumber(int rank) {
     must(MPI_Comm_rank(world_, &rank_));
     CHECK_OP(rank_, ==, rank);
     hosts_ = gatherText(hostName());
+}
+
+std::vector<protocol::TileStats> MpiSync::gather(const std::vector<protocol::TileStats>& mine) {
+    constexpr int kEach = sizeof(protocol::TileStats);
+    CHECK_OP(mine.size(), ==, static_cast<std::size_t>(tiles_[static_cast<std::size_t>(rank_)]));
+    std::vector<protocol::TileStats> all;
+    std::vector<int> bytes, places;
+    if (rank_ == 0) {
+        int place = 0;
+        for (const int count : tiles_) {
+            bytes.push_back(count * kEach);
+            places.push_back(place);
+            place += bytes.back();
+        }
+        all.resize(static_cast<std::size_t>(place / kEach));
+    }
+    MPI_Request request;
+    must(MPI_Igatherv(mine.data(), static_cast<int>(mine.size()) * kEach, MPI_BYTE, all.data(), bytes.data(),
+                      places.data(), MPI_BYTE, 0, world_, &request));
+    finish(request);
+    return all;
 }
 
 void MpiSync::askToStop() {

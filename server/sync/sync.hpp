@@ -35,7 +35,8 @@ class Sync {
     // Every rank's text (its first kMaxText bytes), by rank, on every rank.
     virtual std::vector<std::string> gatherText(const std::string& mine) = 0;
     // Gives each rank another number, from 0 to size() - 1 and each once; rank() says so from then on.
-    virtual void renumber(int rank) = 0;
+    // `tiles`, the same on all ranks: how many each draws, by its new number.
+    virtual void renumber(int rank, std::vector<int> tiles) = 0;
 
     // Any rank: asks rank 0 to end the wall. Rank 0: whether one has asked. Neither waits.
     virtual void askToStop() = 0;
@@ -45,8 +46,8 @@ class Sync {
     virtual void broadcast(FrameState& state) = 0;
     // Returns when all ranks have come here; the result is how long this one waited, in ms.
     virtual double barrier() = 0;
-    // Every rank's figures, by rank, on rank 0; empty elsewhere.
-    virtual std::vector<protocol::TileStats> gather(const protocol::TileStats& mine) = 0;
+    // The figures of every rank's tiles, by rank, on rank 0; empty elsewhere.
+    virtual std::vector<protocol::TileStats> gather(const std::vector<protocol::TileStats>& mine) = 0;
 
     // Sends a captured tile to rank 0 without waiting; the bytes are kept until they are there.
     virtual void sendToRank0(protocol::TileImage tile) = 0;

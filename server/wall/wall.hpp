@@ -31,7 +31,7 @@ struct Blend {
     bool any() const { return left > 0 || right > 0 || top > 0 || bottom > 0; }
 };
 
-// What one server draws, and where it is shown. Empty texts: the wall file does not say.
+// A part of the wall, and where it is shown. Empty texts: the wall file does not say.
 struct Tile {
     std::string name;  // letters, digits, '.', '_' and '-'; unique
     std::size_t screen = 0;
@@ -48,7 +48,7 @@ struct Tile {
 // places of their own, and each may be cut into tiles, too.
 struct Wall {
     int width = 0, height = 0;  // px, bezels included; of free screens side by side
-    std::vector<Tile> tiles;    // row by row from the top, screen by screen; tile i is for rank i
+    std::vector<Tile> tiles;    // row by row from the top, screen by screen
     std::vector<std::pair<std::string, std::string>>
         settings;                     // of its [settings] table: name, value as text
     double pixelAspect = 1;           // of a regular wall: a pixel's width / height

@@ -22,10 +22,11 @@ printf '[wall]\nrows = 2\ncolumns = 2\ntile_px = [160, 120]\nbezel_px = [8, 4]\n
 echo '{"fov_y_deg": 50, "frames": [{"eye": [20, -9, 12], "target": [20, 20, 0], "up": [0, 0, 1]}]}' >path.json
 
 # start_wall NAME OPTION...: returns when a client can connect, or with --pattern when the windows are there.
+servers=4
 start_wall() {
     local log=$1
     shift
-    "${launch[@]}" 4 "$bin/iwalk-server" --wall wall.toml "$@" </dev/null >"$log" 2>"$log.errors" &
+    "${launch[@]}" $servers "$bin/iwalk-server" --wall wall.toml "$@" </dev/null >"$log" 2>"$log.errors" &
     wall=$!
 }
 listening() {
@@ -66,13 +67,32 @@ fly windows-pictures || complain "the wall in windows does not draw"
 shows headless-pictures/frame-000000/wall.png "four windows"
 
 # A picture that the display has lost comes back without a new frame.
-window=$(xdotool search --name tile-1-0 | head -1)
-xdotool windowunmap --sync "$window"
-xdotool windowmap --sync "$window"
-shows headless-pictures/frame-000000/wall.png "after unmapping a window"
-
+comes_back() {
+    local window
+    window=$(xdotool search --name tile-1-0 | head -1)
+    xdotool windowunmap --sync "$window"
+    xdotool windowmap --sync "$window"
+    shows headless-pictures/frame-000000/wall.png "$1"
+}
+comes_back "after unmapping a window"
 xdotool mousemove 250 200 key Escape
 ends Escape
+
+# One server shows all four tiles, then two show two each.
+for servers in 1 2; do
+    start_wall "shared-$servers" --dataset dataset --listen 127.0.0.1:0 --present window
+    listening "shared-$servers"
+    fly "shared-$servers-pictures" || complain "$servers servers with windows do not draw"
+    "$bin/iwalk-compare" headless-pictures/frame-000000/wall.png "shared-$servers-pictures/frame-000000/wall.png" >/dev/null ||
+        complain "captures of $servers servers' windows differ"
+    shows headless-pictures/frame-000000/wall.png "four windows of $servers servers"
+    comes_back "after unmapping a window of $servers servers"
+    fly again || complain "$servers servers do not draw again"
+    shows headless-pictures/frame-000000/wall.png "the next frame of $servers servers"
+    xdotool mousemove 250 200 key Escape
+    ends "Escape in the last of $servers servers' windows"
+done
+servers=4
 
 # Test patterns: no dataset, no client; the same in files and in windows.
 for pattern in grid identity blend; do
@@ -81,14 +101,26 @@ done
 convert -size 328x244 xc:black grid/frame-000000/tile-0-0.png -geometry +0+0 -composite \
     grid/frame-000000/tile-0-1.png -geometry +168+0 -composite grid/frame-000000/tile-1-0.png -geometry +0+124 -composite \
     grid/frame-000000/tile-1-1.png -geometry +168+124 -composite png24:grid.png
-start_wall pattern --pattern grid --present window
-shows grid.png "the grid pattern"
-xdotool mousemove 20 20 key Escape
-ends "Escape in a pattern"
+ranks 1 "$bin/iwalk-server" --wall wall.toml --pattern grid --present file --out grid-1 || complain "no pattern of one server"
+diff -r grid grid-1 >/dev/null || complain "one server's grid is another"
+for servers in 4 1; do
+    start_wall pattern --pattern grid --present window
+    shows grid.png "the grid pattern of $servers servers"
+    xdotool mousemove 20 20 key Escape
+    ends "Escape in a pattern"
+done
 
 # What cannot be shown is said in one line.
 printf '[wall]\nrows = 1\ncolumns = 1\ntile_px = [160, 120]\nmonitor = "DP-7"\n' >monitor.toml
 refuses "no monitor 'DP-7'" "$bin/iwalk-server" --wall monitor.toml --pattern grid --present window
 printf "[wall]\nrows = 1\ncolumns = 1\ntile_px = [160, 120]\ndisplay = \":4711\"\n" >display.toml
 refuses "X display :4711" "$bin/iwalk-server" --wall display.toml --pattern grid --present window
+printf "[wall]\nrows = 1\ncolumns = 2\ntile_px = [160, 120]\ndisplay = [[\"$DISPLAY\", \":4711\"]]\n" >displays.toml
+refuses "start a rank for each display" "$bin/iwalk-server" --wall displays.toml --pattern grid --present window
+printf "[wall]\nrows = 1\ncolumns = 2\ntile_px = [160, 120]\ndisplay = [[\"$DISPLAY.0\", \"\"]]\n" >displays.toml
+ranks 1 "$bin/iwalk-server" --wall displays.toml --pattern grid --present window >one 2>&1 &
+wall=$!
+for _ in $(seq 100); do [ "$(xdotool search --name 'tile-0-' 2>/dev/null | wc -l)" = 2 ] && break; sleep 0.1; done
+xdotool mousemove 20 20 key Escape
+ends "Escape on one display under two names"
 finish

@@ -22,14 +22,14 @@ FrameState stateOf(const Camera& camera) {
 
 class ApplyTest : public RenderTest {
   protected:
-    std::unique_ptr<TilePipeline> pipeline(const Dataset& dataset, const Settings& settings) {
-        auto made = TilePipeline::create(dataset, wall_, 0, settings);
+    std::unique_ptr<RankTiles> tiles(const Dataset& dataset, const Settings& settings) {
+        auto made = RankTiles::create(dataset, wall_, {0}, settings);
         EXPECT_TRUE(made.ok()) << made.error().message;
         return std::move(made).value();
     }
-    ColorImage draw(TilePipeline& tile) {
-        stats_ = tile.draw(stateOf(camera_));
-        return tile.renderer().readColor();
+    ColorImage draw(RankTiles& tiles) {
+        stats_ = tiles[0].draw(stateOf(camera_));
+        return tiles[0].pixels().readColor();
     }
 
     const Wall wall_ = wallOf(200, 150, 1, 1);
@@ -54,13 +54,13 @@ TEST_F(ApplyTest, IsAsIfTheServersHadBegunWithThem) {
     all[8].shading = Shading::flat;
     all[8].ramp = Ramp::none;
 
-    const auto tile = pipeline(dataset, all[0]);
+    const auto only = tiles(dataset, all[0]);
     std::set<std::string> pictures;
     for (const Settings& settings : all) {
-        ASSERT_TRUE(tile->apply(settings).ok());
-        const ColorImage changed = draw(*tile);
-        EXPECT_EQ(changed.pixels, draw(*tile).pixels);  // and stays so
-        EXPECT_EQ(changed.pixels, draw(*pipeline(dataset, settings)).pixels);
+        ASSERT_TRUE(only->apply(settings).ok());
+        const ColorImage changed = draw(*only);
+        EXPECT_EQ(changed.pixels, draw(*only).pixels);  // and stays so
+        EXPECT_EQ(changed.pixels, draw(*tiles(dataset, settings)).pixels);
         pictures.emplace(changed.pixels.begin(), changed.pixels.end());
     }
     EXPECT_GE(pictures.size(), 6u);
@@ -71,17 +71,17 @@ TEST_F(ApplyTest, DepthsAreDistancesAlongTheView) {
     for (const Mode mode : {Mode::frustum, Mode::plp, Mode::cplp}) {
         Settings settings;
         settings.mode = mode;
-        const auto tile = pipeline(dataset, settings);
+        const auto only = tiles(dataset, settings);
         camera_ = {{0, -4, 0}, {0, 0, 0}, {0, 0, 1}, 40};
-        draw(*tile);
+        draw(*only);
         EXPECT_NEAR(stats_.nearDepth, 4, 1e-3);
         EXPECT_NEAR(stats_.midDepth, 4, 1e-3);
         camera_ = {{0, -4, 0}, {4, 0, 0}, {0, 0, 1}, 40};  // slanting: from some 3 units on
-        draw(*tile);
+        draw(*only);
         EXPECT_LT(stats_.nearDepth, 4.8);
         EXPECT_GT(stats_.midDepth, stats_.nearDepth);
         camera_ = {{0, -4, 0}, {0, -8, 0}, {0, 0, 1}, 40};  // away from it
-        draw(*tile);
+        draw(*only);
         EXPECT_EQ(stats_.nearDepth, 0);
         EXPECT_EQ(stats_.midDepth, 0);
     }
@@ -89,11 +89,11 @@ TEST_F(ApplyTest, DepthsAreDistancesAlongTheView) {
 
 TEST_F(ApplyTest, SmallPicturesAreMeansOfLargeOnes) {
     const Dataset dataset = build(sphere(1, 5));
-    const auto tile = pipeline(dataset, {});
-    const ColorImage large = draw(*tile);
+    const auto only = tiles(dataset, {});
+    const ColorImage large = draw(*only);
     for (const auto& [width, height] :
          {std::pair(50, 38), std::pair(13, 9), std::pair(200, 150), std::pair(1, 1)}) {
-        const ColorImage small = tile->renderer().readSmall(width, height);
+        const ColorImage small = (*only)[0].pixels().readSmall(width, height);
         ASSERT_EQ(small.width, width);
         ASSERT_EQ(small.height, height);
         double off = 0;
@@ -110,7 +110,7 @@ TEST_F(ApplyTest, SmallPicturesAreMeansOfLargeOnes) {
         }
         EXPECT_LT(off / (width * height), 12) << width;
     }
-    const ColorImage most = tile->renderer().readSmall(5000, 5000);
+    const ColorImage most = (*only)[0].pixels().readSmall(5000, 5000);
     EXPECT_EQ(most.pixels, large.pixels);
 }
 

@@ -216,9 +216,9 @@ TEST_F(RenderTest, ACacheSmallerThanAPageIsRefused) {
     Settings settings;
     settings.cacheBytes = 1024;
     const Wall wall = wallOf(64, 64, 1, 1);
-    const auto pipeline = TilePipeline::create(dataset, wall, 0, settings);
-    ASSERT_FALSE(pipeline.ok());
-    EXPECT_NE(pipeline.error().message.find("--cache"), std::string::npos);
+    const auto tiles = RankTiles::create(dataset, wall, {0}, settings);
+    ASSERT_FALSE(tiles.ok());
+    EXPECT_NE(tiles.error().message.find("--cache"), std::string::npos);
 }
 
 TEST_F(RenderTest, DrawsOnWithoutABrokenPage) {

@@ -94,7 +94,7 @@ TEST_F(ShowTest, TheCacheIsRedWhereItReadsAndThenGreen) {
 TEST_F(ShowTest, PrioritiesRunFromRedToBlueInModePlp) {
     const Dataset dataset = build(sphere(1, 5));
     Settings settings = showing(Show::priority);
-    EXPECT_FALSE(TilePipeline::create(dataset, wall_, 0, settings).ok());
+    EXPECT_FALSE(RankTiles::create(dataset, wall_, {0}, settings).ok());
     settings.mode = Mode::plp;
     int red = 0, blue = 0;
     for (const Color& c : colorsIn(WallRenders(dataset, settings).draw(wall_, outside_))) {

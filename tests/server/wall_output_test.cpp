@@ -111,8 +111,8 @@ TEST_F(WallOutputTest, WithoutNeighboursNothingIsDimmed) {
 TEST_F(WallOutputTest, GridsOfNeighboursCoincide) {
     const Wall wall =
         wallFrom("[wall]\nrows = 1\ncolumns = 2\ntile_px = [640, 480]\noverlap_px = [100, 0]\n");
-    const ColorImage left = drawPattern(Pattern::grid, wall, 0, "host"),
-                     right = drawPattern(Pattern::grid, wall, 1, "host");
+    const ColorImage left = drawPattern(Pattern::grid, wall, 0, {}),
+                     right = drawPattern(Pattern::grid, wall, 1, {});
     int same = 0, all = 0, lit = 0;
     for (int y = 3; y < 477; ++y)  // inside the tiles' own frames
         for (int x = 543; x < 637; ++x, ++all) {
@@ -153,6 +153,13 @@ TEST(SwapGroup, AllJoinOrNone) {
     EXPECT_EQ(unable.left, 0);  // it never was in
     EXPECT_FALSE(SwapGroup(nullptr, yes).joined());
     EXPECT_FALSE(said);
+}
+
+TEST(WallWindows, DisplaysAreKnownByTheirWholeNames) {
+    EXPECT_EQ(wholeDisplayName(":0"), ":0.0");
+    EXPECT_EQ(wholeDisplayName(":0.1"), ":0.1");
+    EXPECT_EQ(wholeDisplayName("left.lab.org:2"), "left.lab.org:2.0");
+    EXPECT_EQ(wholeDisplayName("none"), "none");
 }
 
 TEST(GlContext, RanksShareGpusInTurn) {

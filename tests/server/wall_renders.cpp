@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/check.hpp"
+#include "server/wall/assign.hpp"
 
 namespace iwalk::tools {
 namespace {
@@ -45,13 +46,17 @@ Wall wallOf(int width, int height, int columns, int rows) {
 }
 
 WallServers::WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings,
-                         double costOfLooking)
+                         double costOfLooking, std::size_t ranks)
     : wall_(wall), near_(nearPlane(settings, dataset.manifest)) {
-    for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
-        Result<std::unique_ptr<TilePipeline>> pipeline =
-            TilePipeline::create(dataset, wall, i, settings, costOfLooking);
-        if (!pipeline) detail::checkFailed(__FILE__, __LINE__, pipeline.error().message);
-        tiles_.push_back(std::move(pipeline).value());
+    const std::vector<std::string> hosts(ranks > 0 ? ranks : wall.tiles.size());
+    const auto shares = tilesOfRanks(wall, hosts);
+    CHECK(shares.ok());
+    for (const std::vector<std::size_t>& share : *shares) {
+        Result<std::unique_ptr<RankTiles>> rank =
+            RankTiles::create(dataset, wall, share, settings, costOfLooking);
+        if (!rank) detail::checkFailed(__FILE__, __LINE__, rank.error().message);
+        ranks_.push_back(std::move(rank).value());
+        for (std::size_t i = 0; i < share.size(); ++i) tiles_.push_back(&(*ranks_.back())[i]);
     }
 }
 
@@ -59,8 +64,8 @@ Picture WallServers::draw(const Camera& camera) {
     drawTiles(camera, protocol::kCaptureColor | protocol::kCaptureDepth);
     Picture picture{ColorImage(wall_.width, wall_.height, 3), DepthImage(wall_.width, wall_.height, 1)};
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
-        paste(tiles_[i]->renderer().readColor(), wall_.tiles[i].onWall, picture.color);
-        paste(tiles_[i]->renderer().readDepth(), wall_.tiles[i].onWall, picture.depth);
+        paste(tiles_[i]->pixels().readColor(), wall_.tiles[i].onWall, picture.color);
+        paste(tiles_[i]->pixels().readDepth(), wall_.tiles[i].onWall, picture.depth);
     }
     return picture;
 }
@@ -71,8 +76,10 @@ void WallServers::drawOnly(const Camera& camera) {
 
 void WallServers::drawTiles(const Camera& camera, std::uint32_t flags) {
     stats_ = {};
-    for (const std::unique_ptr<TilePipeline>& tile : tiles_) {
+    tileStats_.clear();
+    for (TilePipeline* tile : tiles_) {
         const protocol::TileStats stats = tile->draw(stateOf(camera, near_, flags));
+        tileStats_.push_back(stats);
         stats_.visibilityMs += stats.visibilityMs;
         stats_.fetchWaitMs += stats.fetchWaitMs;
         stats_.drawMs += stats.drawMs;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/camera_path.hpp"
-#include "server/frame/tile_pipeline.hpp"
+#include "server/frame/rank_tiles.hpp"
 #include "tests/tools/compare.hpp"
 
 namespace iwalk::tools {
@@ -17,23 +17,28 @@ Wall wallOf(int width, int height, int columns, int rows);
 // they remember here. Needs a current GL context. Errors end the program.
 class WallServers {
   public:
-    // Both are kept by reference. `costOfLooking`: of ConservativeDrawing.
+    // Both are kept by reference. `costOfLooking`: of ConservativeDrawing. `ranks`: how many share the tiles;
+    // 0: one for each.
     WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings,
-                double costOfLooking = ConservativeDrawing::kCostOfLooking);
+                double costOfLooking = ConservativeDrawing::kCostOfLooking, std::size_t ranks = 0);
     // Draws tile after tile; colour and eye-space depth of the whole wall.
     Picture draw(const Camera& camera);
     // The same without pictures, as when nobody captures.
     void drawOnly(const Camera& camera);
     // Sums over the tiles of the last time.
     const protocol::TileStats& stats() const { return stats_; }
+    // Of each tile.
+    const std::vector<protocol::TileStats>& tileStats() const { return tileStats_; }
 
   private:
     void drawTiles(const Camera& camera, std::uint32_t flags);
 
     const Wall& wall_;
     const double near_;  // model units
-    std::vector<std::unique_ptr<TilePipeline>> tiles_;
+    std::vector<std::unique_ptr<RankTiles>> ranks_;
+    std::vector<TilePipeline*> tiles_;  // of all ranks
     protocol::TileStats stats_;
+    std::vector<protocol::TileStats> tileStats_;
 };
 
 // Each picture by servers that have just begun.

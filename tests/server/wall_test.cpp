@@ -179,16 +179,67 @@ Wall wallOnHosts(const std::vector<std::string>& hosts) {
     return wall;
 }
 
+using Shares = std::vector<std::vector<std::size_t>>;
+
+Shares sharesOf(const std::vector<std::string>& tiles, const std::vector<std::string>& ranks) {
+    const Result<Shares> shares = tilesOfRanks(wallOnHosts(tiles), ranks);
+    EXPECT_TRUE(shares.ok()) << shares.error().message;
+    return shares.ok() ? *shares : Shares();
+}
+
+std::string refusedShares(const std::vector<std::string>& tiles, const std::vector<std::string>& ranks) {
+    const Result<Shares> shares = tilesOfRanks(wallOnHosts(tiles), ranks);
+    return shares.ok() ? "" : shares.error().message;
+}
+
 TEST(TilesOfRanks, FollowHostsElseOrder) {
-    using Tiles = std::vector<std::size_t>;
-    EXPECT_EQ(*tilesOfRanks(wallOnHosts({"", "", ""}), {"a", "b", "c"}), (Tiles{0, 1, 2}));
-    EXPECT_EQ(*tilesOfRanks(wallOnHosts({"b", "a", "b"}), {"a", "b.lab.org", "b.lab.org"}), (Tiles{1, 0, 2}));
-    EXPECT_EQ(*tilesOfRanks(wallOnHosts({"", "a.x.org", ""}), {"b", "c", "a"}), (Tiles{0, 2, 1}));
-    EXPECT_EQ(tilesOfRanks(wallOnHosts({"a", "a"}), {"b", "a"}).error().message,
-              "the wall file wants tile 'tile-1' on host 'a', where no rank is left for it (ranks: 1 on a, 1 "
-              "on b): "
-              "see mpirun's --hostfile");
-    EXPECT_FALSE(tilesOfRanks(wallOnHosts({"a.x.org"}), {"a.y.org"}).ok());
+    EXPECT_EQ(sharesOf({"", "", ""}, {"a", "b", "c"}), (Shares{{0}, {1}, {2}}));
+    EXPECT_EQ(sharesOf({"b", "a", "b"}, {"a", "b.lab.org", "b.lab.org"}), (Shares{{1}, {0}, {2}}));
+    EXPECT_EQ(sharesOf({"", "a.x.org", ""}, {"b", "c", "a"}), (Shares{{0}, {2}, {1}}));
+}
+
+TEST(TilesOfRanks, AreContiguousAndAsEvenAsCanBe) {
+    const std::vector<std::string> seven(7);
+    EXPECT_EQ(sharesOf(seven, {"a"}), (Shares{{0, 1, 2, 3, 4, 5, 6}}));
+    EXPECT_EQ(sharesOf(seven, {"a", "b"}), (Shares{{0, 1, 2}, {3, 4, 5, 6}}));
+    EXPECT_EQ(sharesOf(seven, {"a", "a", "a"}), (Shares{{0, 1}, {2, 3}, {4, 5, 6}}));
+    for (std::size_t ranks = 1; ranks <= 7; ++ranks) {
+        std::size_t next = 0, least = 7, most = 0;
+        for (const auto& share : sharesOf(seven, std::vector<std::string>(ranks, "a"))) {
+            for (const std::size_t tile : share) EXPECT_EQ(tile, next++);
+            least = std::min(least, share.size()), most = std::max(most, share.size());
+        }
+        EXPECT_EQ(next, 7u);
+        EXPECT_LE(most, least + 1);
+    }
+}
+
+TEST(TilesOfRanks, OfAHostAreSharedByItsRanks) {
+    const std::vector<std::string> wanted{"a", "b", "a", "b.x.org", "a", "b", "a"};
+    EXPECT_EQ(sharesOf(wanted, {"b", "a"}), (Shares{{1, 3, 5}, {0, 2, 4, 6}}));
+    EXPECT_EQ(sharesOf(wanted, {"b", "a", "b"}), (Shares{{1}, {0, 2, 4, 6}, {3, 5}}));
+    EXPECT_EQ(sharesOf(wanted, {"a", "b", "a", "a"}), (Shares{{0}, {1, 3, 5}, {2}, {4, 6}}));
+}
+
+TEST(TilesOfRanks, WithoutHostGoToRanksThatAreLeftElseToAll) {
+    const std::vector<std::string> wanted{"", "a", "", "a", ""};
+    EXPECT_EQ(sharesOf(wanted, {"a", "b"}), (Shares{{1, 3}, {0, 2, 4}}));
+    EXPECT_EQ(sharesOf(wanted, {"c", "a", "b"}), (Shares{{0}, {1, 3}, {2, 4}}));
+    EXPECT_EQ(sharesOf(wanted, {"a", "a", "a"}), (Shares{{1}, {3}, {0, 2, 4}}));
+    EXPECT_EQ(sharesOf(wanted, {"a", "a"}), (Shares{{0, 1}, {2, 3, 4}}));
+    EXPECT_EQ(sharesOf(wanted, {"a"}), (Shares{{0, 1, 2, 3, 4}}));
+}
+
+TEST(TilesOfRanks, ErrorsNameHosts) {
+    EXPECT_EQ(refusedShares({"a", "b", "b"}, {"a", "a"}),
+              "the wall file wants tile 'tile-1' on host 'b', where no rank is (ranks: 2 on a): see mpirun's "
+              "--hostfile");
+    EXPECT_EQ(
+        refusedShares({"a", "b", "b"}, {"b", "a", "a"}),
+        "the wall file has no tile for rank 2 on host 'a' (ranks: 2 on a, 1 on b): start fewer there, see "
+        "mpirun's --hostfile");
+    EXPECT_NE(refusedShares({"a", ""}, {"b", "b"}), "");
+    EXPECT_NE(refusedShares({"a.x.org"}, {"a.y.org"}), "");
 }
 
 Camera camera() {

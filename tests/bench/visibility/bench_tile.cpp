@@ -45,14 +45,16 @@ BenchTile::BenchTile(const Dataset& dataset, const PixelRect& rect, Method metho
     : dataset_(dataset), cut_(cutAtLevel(dataset.hierarchy, kFullLevel)), visibility_(dataset.hierarchy) {
     std::uint64_t bytes = 0;
     for (const PageRecord& page : dataset.hierarchy.pages) bytes += pageLayout(page).bytes;
-    renderer_ = orEnd(Renderer::create(rect, lookOf(dataset)));
+    pixels_ = orEnd(TilePixels::create(rect.width, rect.height));
+    renderer_ = orEnd(Renderer::create({&rect, 1}, lookOf(dataset)));
     memory_ = orEnd(renderer_->lendArena(bytes));
     cache_ =
         std::make_unique<PageCache>(dataset.hierarchy, orEnd(openPageFiles(dataset.path, dataset.manifest)),
                                     Arena(memory_, Renderer::kArenaAlignment), 2);
     pages_.emplace(dataset.hierarchy, *cache_, *renderer_);
-    if (method != Method::frustum)
-        conservative_.emplace(visibility_, *cache_, *renderer_, *pages_, occlusionOf(method, *renderer_), 0);
+    if (method == Method::frustum) return;
+    occlusion_ = occlusionOf(method, *renderer_);
+    conservative_.emplace(visibility_, *cache_, *renderer_, *pages_, *occlusion_, 0);
 }
 
 template <class Fill>
@@ -60,7 +62,7 @@ protocol::TileStats BenchTile::timed(const TileView& view, Fill fill) {
     protocol::TileStats stats;
     Stopwatch watch;
     const BlockView block(view, onlyBlock(view));
-    renderer_->beginFrame(view);
+    renderer_->beginFrame(view, *pixels_);
     fill(block, stats);
     renderer_->finish();
     cache_->release();

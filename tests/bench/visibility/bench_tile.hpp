@@ -35,10 +35,12 @@ class BenchTile {
     const Dataset& dataset_;
     const Cut cut_;
     const FrustumVisibility visibility_;
+    std::unique_ptr<TilePixels> pixels_;
     std::unique_ptr<Renderer> renderer_;
     std::vector<std::span<std::byte>> memory_;
     std::unique_ptr<PageCache> cache_;
     std::optional<PageDrawing> pages_;
+    std::unique_ptr<Occlusion> occlusion_;
     std::optional<ConservativeDrawing> conservative_;
     std::vector<ResidentPage> drawn_;  // by number of the draw, of drawRanges()
     struct Packed {
