@@ -154,6 +154,7 @@ CLI::App* addGenerate(CLI::App& app, GenerateOptions& options) {
         "  hard-slivers  a million times as long as wide, without area, twice, upon one another\n"
         "  hard-point    all around one vertex\n"
         "  hard-flat     all in one plane\n"
+        "  hard-outlier  one vertex a million times as far away as all others\n"
         "  hard-huge     one triangle as large as all others together");
     command->add_option("scene", options.scene, "One of the above")->required()->type_name("SCENE");
     command

@@ -20,7 +20,7 @@ struct Claim {
 class EntryChecker {
   public:
     EntryChecker(const RecordErrors& errors, const Hierarchy& hierarchy)
-        : errors_(errors), hierarchy_(hierarchy) {}
+        : errors_(errors), hierarchy_(hierarchy), coarsest_(coarsestLevel(hierarchy.rootCellLog2)) {}
 
     Result<void> run() {
         for (std::size_t i = 0; i < hierarchy_.nodes.size(); ++i) {
@@ -43,7 +43,11 @@ class EntryChecker {
         const std::span<const LevelRecord> entries = hierarchy_.entriesOf(node);
         const bool leaf = Hierarchy::isLeaf(node);
         if (leaf && entries.empty()) return errors_.node(i, "an empty leaf");
-        if (!leaf && !mayLackLevels() && (entries.empty() || entries[0].level != node.depth)) {
+        const bool above = !mayLackLevels() && node.depth < coarsest_;
+        if (above && (leaf || !entries.empty())) {
+            return errors_.node(i, "has entries of its own, where levels begin at {}", coarsest_);
+        }
+        if (!leaf && !above && !mayLackLevels() && (entries.empty() || entries[0].level != node.depth)) {
             return errors_.node(i, "not a leaf, yet does not have level {} first", node.depth);
         }
         for (std::size_t e = 0; e < entries.size(); ++e) {
@@ -113,7 +117,8 @@ class EntryChecker {
     // The level that entry `e` of the node turns into.
     int coarserLevel(const NodeRecord& node, std::size_t e) const {
         if (!hierarchy_.hasLevels()) return kNoLevel;
-        return e == 0 ? int{node.depth} - 1 : int{hierarchy_.entriesOf(node)[e - 1].level};
+        if (e > 0) return int{hierarchy_.entriesOf(node)[e - 1].level};
+        return node.depth == coarsest_ ? kNoLevel : int{node.depth} - 1;
     }
 
     std::vector<Claim> claims() const {
@@ -199,6 +204,7 @@ class EntryChecker {
 
     const RecordErrors& errors_;
     const Hierarchy& hierarchy_;
+    const unsigned coarsest_;
 };
 
 }  // namespace

@@ -118,6 +118,7 @@ std::uint32_t Hierarchy::ownTriangles(const NodeRecord& node) const {
 }
 
 const LevelRecord* Hierarchy::drawnAt(const NodeRecord& node, unsigned level) const {
+    level = std::max(level, coarsestLevel(rootCellLog2));
     if (hasLevels() && node.depth > level) return nullptr;  // an ancestor's entry covers it
     const LevelRecord* entry = entryAt(node, level);
     return entry != nullptr ? entry : fullEntryOf(node);

@@ -28,6 +28,13 @@ inline double levelErrorSteps(unsigned rootCellLog2, unsigned level) {
     return std::ldexp(1.0, static_cast<int>(rootCellLog2) - 6 - static_cast<int>(level));
 }
 
+// Offsets in pages have 32 bits. In a root's cell of more steps than that levels begin where cells have 2^28:
+// the nodes above, few as a rule, have no entries, and no node above that depth is a leaf.
+inline constexpr unsigned kMostWholeLog2 = 32, kCoarsestCellLog2 = 28;
+inline unsigned coarsestLevel(unsigned rootCellLog2) {
+    return rootCellLog2 > kMostWholeLog2 ? rootCellLog2 - kCoarsestCellLog2 : 0;
+}
+
 // An entry of a node: the geometry it has at one level. An interior node of depth d has level d of everything
 // in it and below it first; what follows are its own triangles alone, at levels d + 1 to f and full. A leaf
 // has its triangles at levels d to f and full. f is the node's own, at least d - 1: nothing but full.

@@ -40,6 +40,11 @@ class Reader {
         out = value->get<T>();
     }
 
+    // Of a key that may be missing.
+    void getCount(const char* key, std::uint64_t& out) {
+        if (object_.contains(key)) get(key, out);
+    }
+
     void getExponent(const char* key, int& out) {
         const ordered_json* value = find(key);
         if (value == nullptr) return;
@@ -172,6 +177,8 @@ void readAll(Reader& reader, Manifest& manifest) {
         input.get("triangles", provenance.triangles);
         input.get("dropped_non_finite", provenance.droppedNonFinite);
         input.get("dropped_degenerate", provenance.droppedDegenerate);
+        input.getCount("split", provenance.split);
+        input.getCount("cut", provenance.cut);
     });
 }
 
@@ -200,6 +207,8 @@ ordered_json provenanceJson(const Provenance& provenance) {
     json["triangles"] = provenance.triangles;
     json["dropped_non_finite"] = provenance.droppedNonFinite;
     json["dropped_degenerate"] = provenance.droppedDegenerate;
+    if (provenance.split > 0) json["split"] = provenance.split;
+    if (provenance.cut > 0) json["cut"] = provenance.cut;
     return json;
 }
 

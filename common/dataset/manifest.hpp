@@ -24,6 +24,9 @@ struct Provenance {
     std::uint64_t triangles = 0;  // stored in the dataset
     // Left out: with a corner that is not a finite number; with fewer than three distinct lattice positions.
     std::uint64_t droppedNonFinite = 0, droppedDegenerate = 0;
+    // In several pieces, being too long for a page; and of them those that are not all there
+    // (docs/format.md).
+    std::uint64_t split = 0, cut = 0;
 };
 
 // The whole model at one level.

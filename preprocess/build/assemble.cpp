@@ -86,7 +86,9 @@ void Assembler::keep(const GridPlace& place) {
 }
 
 Result<void> Assembler::addGrid(std::vector<Bin> bins, const GridPlace& place) {
-    const std::vector<PlannedNode> plan = planGrid(countsOf(bins), options_.leafTriangles, old_, place.old);
+    const unsigned noLeaves = levelsWithoutLeaves(place.depth, lattice_.rootCellLog2);
+    const std::vector<PlannedNode> plan =
+        planGrid(countsOf(bins), options_.leafTriangles, old_, place.old, noLeaves);
     std::vector<std::uint32_t> numbers(plan.size(), Tree::kNone);
     for (std::size_t i = 0; i < plan.size(); ++i) {
         const PlannedNode& planned = plan[i];
@@ -313,6 +315,7 @@ void Assembler::sortSlices(std::vector<Slice>& slices, std::vector<std::uint32_t
 // How fine the levels are that each slice's triangles need; those of a node in several slices, which are
 // large for it, join its own level.
 void Assembler::findLevels(std::vector<Slice>& slices) {
+    const int coarsest = static_cast<int>(coarsestLevel(lattice_.rootCellLog2));
     const auto find = [&](std::size_t i) {
         Slice& slice = slices[i];
         const int depth = tree_[slice.node].depth;
@@ -323,6 +326,9 @@ void Assembler::findLevels(std::vector<Slice>& slices) {
         } else if (totals_[i] <= options_.leafTriangles) {
             finest = finestLevel(format_, slice, depth);
         }
+        // What the coarsest level has is not only full (Hierarchy::hasLevels()).
+        if (coarsest > 0 && depth == coarsest && !tree_.isInterior(slice.node))
+            finest = std::max(finest, depth);
         // Triangles that stay full until they join those below the node move otherwise than those of leaves.
         slice.group = tree_.isInterior(slice.node) && finest < depth ? kJoining : finest;
         slice.leastLevels = static_cast<unsigned>(std::max(finest + 1 - depth, 0)) + kRangeLevels;

@@ -87,6 +87,7 @@ class Build {
         if (old_ != nullptr) return growRoot();
         ASSIGN_OR_RETURN(lattice_, chooseLattice(summaries_, sample, options_.stepExponent));
         if (parts_.lattice) lattice_ = *parts_.lattice;
+        middle_ = middleOf(sample, lattice_.stepExponent);
         manifest_.stepExponent = lattice_.stepExponent;
         for (const ImportSummary& input : summaries_) {
             manifest_.colors = manifest_.colors || input.colors;
@@ -100,9 +101,10 @@ class Build {
         if (bounds.empty()) return fail("the inputs have no vertices: there is nothing to insert");
         lattice_ = grownRoot(old_->model.lattice, bounds);
         lattice_.stepExponent = manifest_.stepExponent;
-        if (lattice_.rootCellLog2 > kMostRootLog2) {
+        if (lattice_.rootCellLog2 > kMostRootLog2 || !fitsSparse(*old_, lattice_.rootCellLog2)) {
             return fail("the inputs lie too far from what the dataset has: build another dataset of them");
         }
+        middle_ = middleOf(old_->model);
         tree_ = OldTree(old_->model, lattice_);
         for (std::size_t i = 0; i < summaries_.size(); ++i) {
             const auto noteDropped = [&](bool has, bool stays, const char* what) {
@@ -119,7 +121,7 @@ class Build {
 
     Result<std::vector<Bin>> distribute(const RecordFormat& format, ChunkFile& spill) {
         progress_.phase("reading triangles");
-        Distributor distributor(lattice_, format, manifest_.colors, manifest_.normals, spill, tree_);
+        Distributor distributor(lattice_, middle_, format, manifest_.colors, manifest_.normals, spill, tree_);
         const auto sink = [&](std::span<const Triangle> triangles) { return distributor.add(triangles); };
         std::uint64_t stored = 0;
         for (std::size_t i = 0; i < options_.inputs.size(); ++i) {
@@ -130,9 +132,9 @@ class Build {
             distributor.begin(options_.inputs[i], summaries_[i]);
             ASSIGN_OR_RETURN(const ImportCounts counts, inputs_.triangles(i, sink, done));
             stored += distributor.stored();
-            manifest_.provenance.push_back({std::filesystem::path(options_.inputs[i]).filename().string(),
-                                            distributor.stored(), counts.droppedNonFinite,
-                                            distributor.degenerate()});
+            manifest_.provenance.push_back(
+                {std::filesystem::path(options_.inputs[i]).filename().string(), distributor.stored(),
+                 counts.droppedNonFinite, distributor.degenerate(), distributor.split(), distributor.cut()});
         }
         if (stored == 0) {
             return fail(
@@ -241,6 +243,7 @@ class Build {
     Inputs inputs_;
     std::vector<ImportSummary> summaries_;
     Lattice lattice_;
+    LatticePoint middle_{0, 0, 0};  // of the model, strays apart
     OldTree tree_;
     Manifest manifest_;
 };

@@ -5,6 +5,7 @@
 
 #include "common/dataset/page.hpp"
 #include "preprocess/build/grid.hpp"
+#include "preprocess/build/split.hpp"
 
 namespace iwalk {
 namespace {
@@ -25,9 +26,11 @@ std::uint32_t faceNormal(const Triangle& triangle) {
 
 }  // namespace
 
-Distributor::Distributor(const Lattice& lattice, const RecordFormat& format, bool colors, bool normals,
-                         ChunkFile& file, OldTree& old)
+Distributor::Distributor(const Lattice& lattice, const LatticePoint& middle, const RecordFormat& format,
+                         bool colors, bool normals, ChunkFile& file, OldTree& old)
     : lattice_(lattice),
+      middle_(middle),
+      mostSteps_(lattice.rootCellLog2 > kMostWholeLog2 ? kMostTriangleSteps : ~std::uint64_t{0}),
       format_(format),
       colors_(colors),
       normals_(normals),
@@ -38,30 +41,30 @@ Distributor::Distributor(const Lattice& lattice, const RecordFormat& format, boo
 void Distributor::begin(const std::string& input, const ImportSummary& summary) {
     input_ = input;
     summary_ = summary;
-    stored_ = degenerate_ = 0;
+    stored_ = degenerate_ = split_ = cut_ = 0;
 }
 
 // False when a corner is out of reach or the triangle too long.
-bool Distributor::quantise(const Triangle& triangle, TriangleRecord& record) const {
-    std::uint64_t spans = 0;
+bool Distributor::quantise(const Triangle& triangle, double stepsPerUnit, TriangleRecord& record) const {
+    std::uint64_t longest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
-            const double steps = roundToInteger(triangle[corner].position[axis] * stepsPerUnit_);
+            const double steps = roundToInteger(triangle[corner].position[axis] * stepsPerUnit);
             if (!(std::abs(steps) <= static_cast<double>(kMaxSteps))) return false;
             record.positions[corner][axis] =
                 static_cast<std::uint64_t>(static_cast<std::int64_t>(steps) - lattice_.rootCell[axis]);
         }
         const auto [low, high] =
             std::minmax({record.positions[0][axis], record.positions[1][axis], record.positions[2][axis]});
-        spans |= high - low;
+        longest = std::max(longest, high - low);
     }
-    return spans <= kMaxTriangleSteps;
+    return longest <= mostSteps_;
 }
 
 Error Distributor::misfit(const Triangle& triangle) const {
     const glm::dvec3& p = triangle[0].position;
     return fail(
-        "{}: triangle {} at ({:g}, {:g}, {:g}) is too far out or too long for lattice steps of 2^{}: "
+        "{}: triangle {} at ({:g}, {:g}, {:g}) is too far out for lattice steps of 2^{}: "
         "remove it, or give a coarser --step",
         input_, stored_ + degenerate_, p.x, p.y, p.z, lattice_.stepExponent);
 }
@@ -77,20 +80,52 @@ void Distributor::setAttributes(const Triangle& triangle, TriangleRecord& record
 Result<void> Distributor::add(std::span<const Triangle> triangles) {
     TriangleRecord record;
     for (const Triangle& triangle : triangles) {
-        if (!quantise(triangle, record)) return misfit(triangle);
+        if (!quantise(triangle, stepsPerUnit_, record)) {
+            RETURN_IF_ERROR(keepPieces(triangle));
+            continue;
+        }
         const auto& [a, b, c] = record.positions;
         if (a == b || b == c || c == a) {
             ++degenerate_;
             continue;
         }
-        setAttributes(triangle, record);
-        const TrianglePlace place = placeOf(a, b, c, lattice_.rootCellLog2);
-        RETURN_IF_ERROR(store(record, place));
-        LatticeBox box;
-        for (const CellPoint& corner : record.positions) box.add(lattice_.fromCell(corner));
-        old_.touch(place, box);
-        ++stored_;
+        RETURN_IF_ERROR(keep(triangle, record));
     }
+    return {};
+}
+
+Result<void> Distributor::keep(const Triangle& triangle, TriangleRecord& record) {
+    setAttributes(triangle, record);
+    const auto& [a, b, c] = record.positions;
+    const TrianglePlace place = placeOf(a, b, c, lattice_.rootCellLog2);
+    RETURN_IF_ERROR(store(record, place));
+    LatticeBox box;
+    for (const CellPoint& corner : record.positions) box.add(lattice_.fromCell(corner));
+    old_.touch(place, box);
+    ++stored_;
+    return {};
+}
+
+Result<void> Distributor::keepPieces(const Triangle& triangle) {
+    Triangle inSteps = triangle;
+    double farthest = 0;
+    for (Corner& corner : inSteps) {
+        corner.position *= stepsPerUnit_;
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
+            corner.position[axis] = std::nearbyint(corner.position[axis]);
+            farthest = std::max(farthest, std::abs(corner.position[axis]));
+        }
+    }
+    if (!std::isfinite(farthest)) return misfit(triangle);
+    const SplitTriangle split = splitTriangle(inSteps, middle_);
+    TriangleRecord record;
+    for (const Triangle& piece : split.pieces) {
+        if (!quantise(piece, 1, record)) return misfit(triangle);
+        const auto& [a, b, c] = record.positions;
+        if (a != b && b != c && c != a) RETURN_IF_ERROR(keep(piece, record));
+    }
+    split_ += split.pieces.size() > 1 ? 1 : 0;
+    cut_ += split.isCut ? 1 : 0;
     return {};
 }
 

@@ -14,29 +14,37 @@ namespace iwalk {
 // Puts the triangles of the inputs on the lattice and into the bins of the topmost grid.
 class Distributor {
   public:
-    Distributor(const Lattice& lattice, const RecordFormat& format, bool colors, bool normals,
-                ChunkFile& file, OldTree& old);
+    // `middle`: of the model, lattice.
+    Distributor(const Lattice& lattice, const LatticePoint& middle, const RecordFormat& format, bool colors,
+                bool normals, ChunkFile& file, OldTree& old);
 
     // The triangles that follow are of this input: its name for errors, and what it has.
     void begin(const std::string& input, const ImportSummary& summary);
-    // Fails when a triangle does not fit the lattice, or the disk is full.
+    // Triangles that are too long for the lattice are split. Fails when one does not fit it, or the disk is
+    // full.
     Result<void> add(std::span<const Triangle> triangles);
     // A triangle that the dataset has had before.
     Result<void> addOld(const TriangleRecord& record);
     // Of the input that began last: stored triangles, and those with fewer than three distinct lattice
-    // positions.
+    // positions; triangles that are in several pieces, and those of which a part at least is left out.
     std::uint64_t stored() const { return stored_; }
     std::uint64_t degenerate() const { return degenerate_; }
+    std::uint64_t split() const { return split_; }
+    std::uint64_t cut() const { return cut_; }
 
     Result<std::vector<Bin>> finish() { return writer_.finish(); }
 
   private:
-    bool quantise(const Triangle& triangle, TriangleRecord& record) const;
+    bool quantise(const Triangle& triangle, double stepsPerUnit, TriangleRecord& record) const;
+    Result<void> keep(const Triangle& triangle, TriangleRecord& record);
+    Result<void> keepPieces(const Triangle& triangle);
     Result<void> store(const TriangleRecord& record, const TrianglePlace& place);
     Error misfit(const Triangle& triangle) const;
     void setAttributes(const Triangle& triangle, TriangleRecord& record) const;
 
     Lattice lattice_;
+    glm::dvec3 middle_;        // steps
+    std::uint64_t mostSteps_;  // of a triangle
     RecordFormat format_;
     bool colors_, normals_;  // of the dataset
     double stepsPerUnit_;
@@ -44,7 +52,7 @@ class Distributor {
     OldTree& old_;  // is told of new triangles
     std::string input_;
     ImportSummary summary_;
-    std::uint64_t stored_ = 0, degenerate_ = 0;
+    std::uint64_t stored_ = 0, degenerate_ = 0, split_ = 0, cut_ = 0;
 };
 
 }  // namespace iwalk

@@ -27,8 +27,9 @@ constexpr std::array<std::uint16_t, 512> kPlaces = makePlaces();
 
 class Planner {
   public:
-    Planner(std::span<const std::uint64_t> counts, std::uint64_t leafTriangles, const OldTree& tree)
-        : leafTriangles_(leafTriangles), tree_(tree) {
+    Planner(std::span<const std::uint64_t> counts, std::uint64_t leafTriangles, const OldTree& tree,
+            unsigned noLeaves)
+        : leafTriangles_(leafTriangles), tree_(tree), noLeaves_(noLeaves) {
         CHECK_OP(counts.size(), ==, kGridBins);
         before_.push_back(0);
         for (const std::uint64_t count : counts) before_.push_back(before_.back() + count);
@@ -38,7 +39,7 @@ class Planner {
                std::uint32_t old) {
         const std::uint64_t total = before_[bin + kBinsBelow[level]] - before_[bin];
         const bool wasSplit = tree_.isInterior(old);
-        const bool isLeaf = total <= leafTriangles_ && !wasSplit;
+        const bool isLeaf = total <= leafTriangles_ && !wasSplit && level >= noLeaves_;
         // A leaf that is split now is another node.
         const std::uint32_t origin = isLeaf || wasSplit ? old : OldTree::kNone;
         const auto add = [&](PlannedNode::Kind kind, std::size_t bins) {
@@ -60,6 +61,7 @@ class Planner {
   private:
     std::uint64_t leafTriangles_;
     const OldTree& tree_;
+    unsigned noLeaves_;
     std::vector<std::uint64_t> before_;  // triangles in the bins before each
     std::vector<PlannedNode> plan_;
 };
@@ -89,8 +91,8 @@ std::uint64_t sortKey(const TrianglePlace& place, unsigned edgeLog2) {
 }
 
 std::vector<PlannedNode> planGrid(std::span<const std::uint64_t> binCounts, std::uint64_t leafTriangles,
-                                  const OldTree& tree, std::uint32_t old) {
-    Planner planner(binCounts, leafTriangles, tree);
+                                  const OldTree& tree, std::uint32_t old, unsigned noLeaves) {
+    Planner planner(binCounts, leafTriangles, tree, noLeaves);
     planner.visit(0, 0, kNoParent, 0, old);
     return planner.take();
 }

@@ -50,7 +50,14 @@ inline constexpr std::uint32_t kNoParent = 0xffffffff;
 
 // Splits what has more than `leafTriangles` triangles, in depth-first order, from the counts of the bins
 // alone, and what the old tree splits. `old`: the node of the old tree in the place of the grid's root.
+// `noLeaves`: so many of the topmost levels of the grid have no leaves, whatever their counts.
 std::vector<PlannedNode> planGrid(std::span<const std::uint64_t> binCounts, std::uint64_t leafTriangles,
-                                  const OldTree& tree, std::uint32_t old);
+                                  const OldTree& tree, std::uint32_t old, unsigned noLeaves = 0);
+
+// The same for the grid whose root is at this depth.
+inline unsigned levelsWithoutLeaves(unsigned depth, unsigned rootCellLog2) {
+    const unsigned coarsest = coarsestLevel(rootCellLog2);
+    return coarsest > depth ? coarsest - depth : 0;
+}
 
 }  // namespace iwalk

@@ -3,8 +3,10 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
+#include "preprocess/build/survey.hpp"
 #include "preprocess/import/placement.hpp"
 
 namespace iwalk {
@@ -64,15 +66,20 @@ Inputs::Inputs(const BuildOptions& options, const Budget& budget, const std::str
 Result<std::vector<ImportSummary>> Inputs::scan(const VertexSink& vertices, const ProgressSink& progress) {
     const Placement turn = yUpToZUp();
     std::vector<glm::dvec3> turned;
-    const VertexSink turning = [&](std::span<const glm::dvec3> points) {
+    Distances distances;
+    const VertexSink looking = [&](std::span<const glm::dvec3> points) {
+        distances.add(points);
+        if (!turn_) return vertices(points);
         turned.clear();
         for (const glm::dvec3& point : points) turned.push_back(turn.point(point));
-        if (vertices) vertices(turned);
+        vertices(turned);
     };
     std::vector<ImportSummary> summaries;
     for (std::size_t i = 0; i < files_.size(); ++i) {
+        distances = {};
         ASSIGN_OR_RETURN(ImportSummary summary,
-                         files_.scan(i, turn_ ? turning : vertices, partOf(progress, i, files_.size())));
+                         files_.scan(i, vertices ? looking : vertices, partOf(progress, i, files_.size())));
+        summary.precision = std::ldexp(summary.precision, -distances.spareDigits());
         if (turn_) summary.bounds = turn.box(summary.bounds);
         summaries.push_back(summary);
     }

@@ -20,7 +20,8 @@ class Inputs {
     Inputs(const BuildOptions& options, const Budget& budget, const std::string& spillDirectory,
            ImporterFactory factory);
 
-    // First pass. Positions of all vertices go to `vertices`.
+    // First pass. Positions of all vertices go to `vertices`. Precisions are those of nearly all vertices of
+    // an input: a stray far out does not make the others coarse.
     Result<std::vector<ImportSummary>> scan(const VertexSink& vertices, const ProgressSink& progress);
     // Second pass, input `index` alone; in the order of the inputs.
     Result<ImportCounts> triangles(std::size_t index, const TriangleSink& sink, const ProgressSink& progress);

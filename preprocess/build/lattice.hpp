@@ -14,8 +14,9 @@ using CellPoint = glm::u64vec3;
 
 // Positions may be this many steps from the lattice's origin, in each axis.
 inline constexpr std::int64_t kMaxSteps = std::int64_t{1} << 59;
-// The longest side of a triangle's box, in steps: offsets in pages have 32 bits.
-inline constexpr std::uint64_t kMaxTriangleSteps = 0xffffffff;
+// In a root's cell that pages cannot span, the longest side of a triangle's box, in steps: the nodes that own
+// triangles lie below those of the coarsest level (common/dataset/hierarchy.hpp).
+inline constexpr std::uint64_t kMostTriangleSteps = std::uint64_t{1} << 27;
 
 // The lattice of a dataset and the cube on it that holds everything.
 struct Lattice {

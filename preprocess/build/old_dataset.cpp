@@ -44,6 +44,33 @@ Result<OldDataset> loadOldDataset(const std::string& path) {
     return OldDataset{std::move(manifest), std::move(model), std::move(hierarchy.pages)};
 }
 
+bool fitsSparse(const OldDataset& old, unsigned rootCellLog2) {
+    const unsigned before = old.model.lattice.rootCellLog2;
+    if (rootCellLog2 <= kMostWholeLog2 || before < kCoarsestCellLog2) return true;
+    // Other programs may have made it without levels.
+    const auto hasLevels = [](const auto& entries) {
+        return !entries.empty() && entries.back().level != kFullLevel;
+    };
+    return before > kMostWholeLog2 && std::ranges::any_of(old.model.entries, hasLevels);
+}
+
+LatticePoint middleOf(const LevelModel& model) {
+    const Lattice& lattice = model.lattice;
+    const unsigned depth = coarsestLevel(lattice.rootCellLog2);
+    std::vector<std::uint64_t> triangles(model.nodes.size(), 0);
+    std::size_t most = 0;
+    for (std::size_t node = model.nodes.size(); node-- > 0;) {
+        const NodeRecord& record = model.nodes[node];
+        if (model.owns(static_cast<std::uint32_t>(node))) triangles[node] += model.entries[node][0].triangles;
+        for (int child = 0; child < Hierarchy::childCount(record); ++child)
+            triangles[node] += triangles[record.firstChild + static_cast<std::uint32_t>(child)];
+        const bool isBetter = record.depth == depth && triangles[node] >= triangles[most];
+        if (isBetter || model.nodes[most].depth != depth) most = node;
+    }
+    const CellPoint half(std::uint64_t{1} << (lattice.rootCellLog2 - depth - 1));
+    return lattice.fromCell(model.cells()[most] + half);
+}
+
 std::vector<std::string> pagePaths(const std::string& dataset, const Manifest& manifest) {
     std::vector<std::string> paths;
     for (const DatasetFile& file : manifest.pageFiles) paths.push_back(dataset + "/" + file.name);

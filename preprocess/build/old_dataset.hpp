@@ -18,6 +18,14 @@ struct OldDataset {
 };
 Result<OldDataset> loadOldDataset(const std::string& path);
 
+// Whether what the dataset has can stay where its root's cell is to be this large: a root's cell of more than
+// 2^32 steps has entries in cells of 2^28 and less only (common/dataset/hierarchy.hpp).
+bool fitsSparse(const OldDataset& old, unsigned rootCellLog2);
+
+// The middle of the root's cell; where that is larger than 2^32 steps, of the cell with most of the
+// triangles.
+LatticePoint middleOf(const LevelModel& model);
+
 // The paths of the dataset's pages files, in the order of the manifest.
 std::vector<std::string> pagePaths(const std::string& dataset, const Manifest& manifest);
 

@@ -27,7 +27,8 @@ class Grower {
             starts.push_back(starts.back() + static_cast<std::size_t>(count));
 
         std::vector<std::uint32_t> numbers;  // of planned nodes
-        for (const PlannedNode& planned : planGrid(counts, leafTriangles_, tree_, old)) {
+        const unsigned noLeaves = levelsWithoutLeaves(depth, format_.rootCellLog2());
+        for (const PlannedNode& planned : planGrid(counts, leafTriangles_, tree_, old, noLeaves)) {
             const bool isRoot = planned.parent == kNoParent;
             const std::uint32_t up = isRoot ? parent : numbers[planned.parent];
             const std::uint8_t where = isRoot ? octant : planned.octant;

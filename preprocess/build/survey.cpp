@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace iwalk {
 namespace {
@@ -67,6 +68,35 @@ void Sample::add(std::span<const glm::dvec3> positions) {
         every_ *= 2;
     }
     seen_ += positions.size();
+}
+
+void Distances::add(std::span<const glm::dvec3> positions) {
+    for (const glm::dvec3& p : positions) {
+        const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        ++counts_[std::bit_cast<std::uint64_t>(largest) >> 52];
+    }
+}
+
+int Distances::spareDigits() const {
+    const std::uint64_t few = std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}) / 20;
+    std::size_t largest = counts_.size() - 1;
+    while (largest > 0 && counts_[largest] == 0) --largest;
+    std::size_t at = largest;
+    for (std::uint64_t beyond = 0; at > 0 && beyond + counts_[at] <= few;) beyond += counts_[at--];
+    return static_cast<int>(largest - at);
+}
+
+LatticePoint middleOf(const Sample& sample, int stepExponent) {
+    LatticePoint middle(0);
+    std::vector<double> values(sample.positions().size());
+    for (glm::length_t axis = 0; axis < 3 && !values.empty(); ++axis) {
+        std::ranges::transform(sample.positions(), values.begin(),
+                               [axis](const glm::dvec3& p) { return p[axis]; });
+        const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::ranges::nth_element(values, half);
+        middle[axis] = toLattice(*half, stepExponent);
+    }
+    return middle;
 }
 
 LatticeBox boundsOnLattice(std::span<const ImportSummary> inputs, int stepExponent) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,6 +21,21 @@ class Sample {
     std::vector<glm::dvec3> positions_;
     std::uint64_t every_ = 1, seen_ = 0;
 };
+
+// How far vertices are from the origin: how many have their largest |coordinate| in which power of two.
+class Distances {
+  public:
+    void add(std::span<const glm::dvec3> positions);
+    // How many binary digits more of a fraction the coordinates of nearly all vertices (19 of 20) have than
+    // the largest one has: 0 but for strays far out.
+    int spareDigits() const;
+
+  private:
+    std::array<std::uint64_t, 2048> counts_{};  // by the exponent's bits
+};
+
+// Where the middle of the model is, strays apart; lattice.
+LatticePoint middleOf(const Sample& sample, int stepExponent);
 
 // The box of the inputs on a lattice; empty when they have no vertices.
 LatticeBox boundsOnLattice(std::span<const ImportSummary> inputs, int stepExponent);

@@ -25,16 +25,25 @@ void printSummary(const Manifest& manifest, double seconds) {
     fmt::print("{} triangles in {:.1f} s: {:.2f} Mtri/s, {:.2f} bytes/triangle ({}), peak memory {}\n",
                manifest.triangles, seconds, triangles / seconds / 1e6, static_cast<double>(bytes) / triangles,
                formatBytes(bytes), formatBytes(peakMemory()));
-    std::uint64_t nonFinite = 0, degenerate = 0;
+    std::uint64_t nonFinite = 0, degenerate = 0, split = 0, cut = 0;
     for (const Provenance& input : manifest.provenance) {
         nonFinite += input.droppedNonFinite;
         degenerate += input.droppedDegenerate;
+        split += input.split;
+        cut += input.cut;
     }
     if (nonFinite + degenerate > 0) {
         fmt::print(
             "left out: {} triangles with a corner that is not finite, {} with fewer than three distinct "
             "positions\n",
             nonFinite, degenerate);
+    }
+    if (split + cut > 0) {
+        fmt::print(
+            "far from the rest: {} triangles split, {} cut off where they reach out of the lattice; a "
+            "coarser "
+            "--step keeps them whole\n",
+            split, cut);
     }
 }
 

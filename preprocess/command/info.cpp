@@ -68,7 +68,9 @@ ordered_json toJson(const Manifest& manifest, const Hierarchy& hierarchy, const 
         json["provenance"].push_back({{"input", input.input},
                                       {"triangles", input.triangles},
                                       {"dropped_non_finite", input.droppedNonFinite},
-                                      {"dropped_degenerate", input.droppedDegenerate}});
+                                      {"dropped_degenerate", input.droppedDegenerate},
+                                      {"split", input.split},
+                                      {"cut", input.cut}});
     }
     return json;
 }
@@ -135,6 +137,10 @@ void print(const Manifest& manifest, const Hierarchy& hierarchy, const Summary& 
     for (const Provenance& input : manifest.provenance) {
         fmt::print("input:      {}: {} triangles; left out: {} not finite, {} degenerate\n", input.input,
                    input.triangles, input.droppedNonFinite, input.droppedDegenerate);
+        if (input.split + input.cut > 0) {
+            fmt::print("            too long for a page: {} split, {} cut off far from the middle\n",
+                       input.split, input.cut);
+        }
     }
 }
 

@@ -12,8 +12,8 @@
 namespace iwalk {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"hard-far", "hard-slivers", "hard-point", "hard-flat",
-                                                 "hard-huge"};
+constexpr std::array<std::string_view, 6> kNames{"hard-far",  "hard-slivers", "hard-point",
+                                                 "hard-flat", "hard-outlier", "hard-huge"};
 constexpr float kSide = 10;  // of a grid, model units
 
 // Waves over the unit square, some cells long.
@@ -148,6 +148,11 @@ Result<void> generateHard(std::string_view name, std::uint64_t triangles, std::u
         return slivers(static_cast<std::uint32_t>(triangles / 5), seed, output, progress);
     if (name == "hard-point") return point(static_cast<std::uint32_t>(triangles), noise, output, progress);
     if (name == "hard-flat") return flat(grid, seed, output, progress);
+    if (name == "hard-outlier") {
+        constexpr float kFar = kSide * 1e6f;
+        return withOne(grid, noise, {glm::vec3(0), glm::vec3(kSide, 0, 0), glm::vec3(kFar, kFar, kFar)},
+                       output, progress);
+    }
     return withOne(grid, noise, {glm::vec3(0, 0, -3), glm::vec3(kSide, 0, 3), glm::vec3(0, kSide, 3)}, output,
                    progress);
 }

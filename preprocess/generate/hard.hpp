@@ -13,6 +13,7 @@ namespace iwalk {
 //   hard-slivers  triangles a million times as long as wide, without area, twice, or upon one another
 //   hard-point    triangles that all share one vertex
 //   hard-flat     triangles that all lie in one plane
+//   hard-outlier  one vertex a million times as far away as all others
 //   hard-huge     one triangle as large as all others together
 bool isHardScene(std::string_view name);
 // Positions of 64 bits where 32 would not do.

@@ -13,8 +13,6 @@
 namespace iwalk {
 namespace {
 
-constexpr unsigned kMostRootLog2 = 32;
-
 class Pass {
   public:
     Pass(LevelTools& tools, Stage stage, ChunkFile& spill)
@@ -63,15 +61,6 @@ class Pass {
     TargetBins targets_;
 };
 
-// Pages of a dataset without levels do not move.
-void dropMorphs(PageWriter& writer) {
-    for (std::uint32_t page = 0; page < writer.records().size(); ++page) {
-        PageRecord& record = writer.record(page);
-        record.morphOffset = record.morphBytes = record.morphFile = 0;
-        record.flags &= ~std::uint32_t{kMorphWide};
-    }
-}
-
 }  // namespace
 
 Result<void> makeLevels(LevelModel& model, const RecordFormat& format, const LevelOptions& options,
@@ -84,14 +73,9 @@ Result<void> makeLevels(LevelModel& model, const RecordFormat& format, const Lev
     progress.phase("finding opacities");
     const auto done = [&](double part) { progress.done(part); };
     RETURN_IF_ERROR(findOpacities(model, writer.records(), old, store, arena, done));
-    // Offsets in pages have 32 bits, and at coarse levels pages are as large as the root's cell. (A stray
-    // vertex far out makes such a root; its dataset has full resolution only.)
-    if (model.lattice.rootCellLog2 > kMostRootLog2) {
-        dropMorphs(writer);
-        return {};
-    }
     LevelTools tools{model, format, options.leafTriangles, old, store, writer, arena};
-    for (int level = model.finestLevel(); level >= 0; --level) {
+    const int coarsest = static_cast<int>(coarsestLevel(model.lattice.rootCellLog2));
+    for (int level = model.finestLevel(); level >= coarsest; --level) {
         RETURN_IF_ERROR(writer.flush());
         Stage stage = makeStage(model, static_cast<unsigned>(level), writer);
         RETURN_IF_ERROR(Pass(tools, std::move(stage), spill).run(progress));

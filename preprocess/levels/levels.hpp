@@ -16,10 +16,10 @@ struct LevelOptions {
 };
 
 // Completes a model whose full resolution is in pages. Leaves get their opacities. Then the levels are made:
-// from the finest that a node has to level 0, each from the one before by one map of vertices. Space is cut
-// into cells that decide for themselves where vertices go, then the map is applied to the pages. Morph blocks
-// and pages go to the writer; nodes get their boxes and entries. What the old dataset has of all this and is
-// not touched stays. `store`: reads its pages and the writer's.
+// from the finest that a node has to the coarsest, each from the one before by one map of vertices. Space is
+// cut into cells that decide for themselves where vertices go, then the map is applied to the pages. Morph
+// blocks and pages go to the writer; nodes get their boxes and entries. What the old dataset has of all this
+// and is not touched stays. `store`: reads its pages and the writer's.
 Result<void> makeLevels(LevelModel& model, const RecordFormat& format, const LevelOptions& options,
                         const OldTree& old, PageStore& store, PageWriter& writer, ChunkFile& spill,
                         Progress& progress);

@@ -37,7 +37,8 @@ Result<void> measure(const std::string& path) {
     const RecordFormat format(lattice.rootCellLog2, summaries[0].colors, summaries[0].normals);
     ASSIGN_OR_RETURN(ChunkFile spill, ChunkFile::create(directory.path("triangles"), budget.chunkBytes));
     OldTree none;
-    Distributor distributor(lattice, format, summaries[0].colors, summaries[0].normals, spill, none);
+    Distributor distributor(lattice, middleOf(sample, lattice.stepExponent), format, summaries[0].colors,
+                            summaries[0].normals, spill, none);
     distributor.begin(path, summaries[0]);
     ASSIGN_OR_RETURN(const ImportCounts counts,
                      inputs.triangles(0, [&](auto triangles) { return distributor.add(triangles); }, {}));

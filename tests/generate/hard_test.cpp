@@ -56,8 +56,20 @@ TEST_P(HardTest, BuildsAndVerifies) {
     const auto manifest = buildDataset(options, progress);
     ASSERT_TRUE(manifest.ok()) << manifest.error().message;
     const Provenance& input = manifest->provenance.at(0);
-    EXPECT_EQ(manifest->triangles + input.droppedDegenerate, scene.made.triangles);
-    if (std::string(GetParam()) != "hard-slivers") {
+    const std::string name = GetParam();
+    if (name == "hard-outlier") {
+        EXPECT_EQ(input.split, 1u);
+        EXPECT_EQ(input.cut, 1u);
+        EXPECT_EQ(input.droppedDegenerate, 0u);
+        EXPECT_EQ(manifest->stepExponent, 4 - 24);  // as of 10 units
+        // One is in some pieces.
+        EXPECT_GT(manifest->triangles, scene.made.triangles);
+        EXPECT_LT(manifest->triangles, scene.made.triangles + 100);
+    } else {
+        EXPECT_EQ(input.split + input.cut, 0u);
+        EXPECT_EQ(manifest->triangles + input.droppedDegenerate, scene.made.triangles);
+    }
+    if (name != "hard-slivers") {
         EXPECT_LE(input.droppedDegenerate, 200u);
     }
     const auto verified = verifyDataset(options.output, progress);
@@ -66,7 +78,8 @@ TEST_P(HardTest, BuildsAndVerifies) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, HardTest,
-                         testing::Values("hard-far", "hard-slivers", "hard-point", "hard-flat", "hard-huge"),
+                         testing::Values("hard-far", "hard-slivers", "hard-point", "hard-flat",
+                                         "hard-outlier", "hard-huge"),
                          [](const auto& scene) { return std::string(scene.param).substr(5); });
 
 TEST(HardSceneTest, farIsFarWithMillimetres) {
@@ -113,6 +126,9 @@ TEST(HardSceneTest, oneTriangleStandsOut) {
         std::ranges::sort(lengths, std::greater());
         return std::pair(lengths[0], lengths[1]);
     };
+    const auto [outlier, others] = longest(Scene("hard-outlier"));
+    EXPECT_GT(outlier, 1e7);
+    EXPECT_LT(others, 1);
     const auto [huge, small] = longest(Scene("hard-huge"));
     EXPECT_GT(huge, 10);
     EXPECT_LT(small, 1);

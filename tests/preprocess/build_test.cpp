@@ -104,7 +104,7 @@ TEST(BuildTest, ReachesFar) {
     const TempDirectory directory;
     FakeInput input = makeSoup(5000, 1e-4, 50, 6, true);
     const double far = std::ldexp(1.0, 39 - 22);
-    input.triangles.push_back(makeTriangle({far, -far, far}, {far + 900, -far, far}, {far, -far + 900, far}));
+    input.triangles.push_back(makeTriangle({far, -far, far}, {far + 30, -far, far}, {far, -far + 30, far}));
     input.triangles.back()[1].normal = input.triangles.back()[0].normal = {0, 0, 1};
     input.triangles.back()[2].normal = {0, 1, 0};
     expectFaithful(input, directory.path("a"), {.leafTriangles = 100, .stepExponent = -22});
