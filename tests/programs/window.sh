@@ -86,9 +86,11 @@ for servers in 1 2; do
     "$bin/iwalk-compare" headless-pictures/frame-000000/wall.png "shared-$servers-pictures/frame-000000/wall.png" >/dev/null ||
         complain "captures of $servers servers' windows differ"
     shows headless-pictures/frame-000000/wall.png "four windows of $servers servers"
-    comes_back "after unmapping a window of $servers servers"
-    fly again || complain "$servers servers do not draw again"
-    shows headless-pictures/frame-000000/wall.png "the next frame of $servers servers"
+    if [ $servers = 1 ]; then
+        comes_back "after unmapping a window of a server with four"
+        fly again || complain "a server with four windows does not draw again"
+        shows headless-pictures/frame-000000/wall.png "the next frame of a server with four windows"
+    fi
     xdotool mousemove 250 200 key Escape
     ends "Escape in the last of $servers servers' windows"
 done
@@ -117,7 +119,7 @@ printf "[wall]\nrows = 1\ncolumns = 1\ntile_px = [160, 120]\ndisplay = \":4711\"
 refuses "X display :4711" "$bin/iwalk-server" --wall display.toml --pattern grid --present window
 printf "[wall]\nrows = 1\ncolumns = 2\ntile_px = [160, 120]\ndisplay = [[\"$DISPLAY\", \":4711\"]]\n" >displays.toml
 refuses "start a rank for each display" "$bin/iwalk-server" --wall displays.toml --pattern grid --present window
-printf "[wall]\nrows = 1\ncolumns = 2\ntile_px = [160, 120]\ndisplay = [[\"$DISPLAY.0\", \"\"]]\n" >displays.toml
+printf "[wall]\nrows = 1\ncolumns = 2\ntile_px = [160, 120]\ndisplay = [[\"$DISPLAY.0\", \"$DISPLAY\"]]\n" >displays.toml
 ranks 1 "$bin/iwalk-server" --wall displays.toml --pattern grid --present window >one 2>&1 &
 wall=$!
 for _ in $(seq 100); do [ "$(xdotool search --name 'tile-0-' 2>/dev/null | wc -l)" = 2 ] && break; sleep 0.1; done
