@@ -35,8 +35,9 @@ class LastStateTest : public ::testing::Test {
         return !nothing;
     }
 
-    const std::string file_ = ::testing::TempDir() + "iwalk-last-state.json";
-    const Camera camera_{{1.25, -2, 3e9}, {4, 5, 6}, {0, 0, 1}, 33.5};
+    const std::string file_ = ::testing::TempDir() + "iwalk-last-state-" +
+                              ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
+    const Camera camera_{{1.25e9, -2, 3}, {4, 5, 6}, {0, 0, 1}, 33.5};
     Settings start_;
 };
 
@@ -89,6 +90,7 @@ TEST_F(LastStateTest, AMovingCameraIsWrittenNowAndThen) {
         if (fs::exists(file_)) written = ms;
     }
     EXPECT_EQ(written, 2000);
+    ASSERT_TRUE(known().camera);
     EXPECT_EQ(known().camera->eye.x, 2000);
 }
 
