@@ -33,6 +33,11 @@ std::string summary(const Options& options, const std::vector<PlayedFrame>& fram
     if (const auto times = frameTimes(frames)) {
         line += fmt::format(", {:.1f} ms median, {:.1f} ms p99", times->median, times->p99);
     }
+    // In lock step cameras wait in line for their turn.
+    if (options.pace == Pace::realtime && !frames.empty()) {
+        const FrameTimes latency = latencies(frames);
+        line += fmt::format(", camera to swap {:.1f} ms median, {:.1f} ms p99", latency.median, latency.p99);
+    }
     std::uint64_t badPages = 0;
     for (const PlayedFrame& frame : frames) {
         for (const auto& stats : frame.done.tiles) badPages += stats.badPages;

@@ -65,7 +65,7 @@ Result<void> Playback::sendFrame(std::size_t frame) {
     if (options_.pace == Pace::lockstep) request.flags |= protocol::kLockstep;
     if (capture_) request.flags |= protocol::kCaptureColor;
     if (capture_ && options_.captureDepth) request.flags |= protocol::kCaptureDepth;
-    underWay_[request.sequence];
+    underWay_[request.sequence].sent = Clock::now();
     next_ = frame + 1;
     return link_.send(request);
 }
@@ -114,7 +114,9 @@ Result<void> Playback::takeFrame(const protocol::FrameDone& done) {
 
     // Older cameras that were not drawn were overtaken by this one.
     std::erase_if(underWay_, [&](const auto& r) { return r.first < done.sequence && !r.second.done; });
-    played_.push_back({static_cast<std::size_t>(done.sequence - 1), done});
+    const std::chrono::duration<double, std::milli> answered = Clock::now() - request->second.sent;
+    played_.push_back({static_cast<std::size_t>(done.sequence - 1), done,
+                       std::max(0.0, answered.count() - done.sinceSwapMs)});
     request->second.done = true;
     settle(done.sequence);
     return {};

@@ -38,6 +38,7 @@ class Playback {
   private:
     // A request under way; its key is its sequence number, which is the frame's index in the path plus 1.
     struct Request {
+        ServerLink::Clock::time_point sent{};
         bool done = false;
         std::set<std::pair<std::uint32_t, protocol::ImageKind>> pictures;
     };

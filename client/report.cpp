@@ -16,6 +16,11 @@ double quantile(const std::vector<double>& sorted, double share) {
     return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
 }
 
+FrameTimes quantiles(std::vector<double> times) {
+    std::sort(times.begin(), times.end());
+    return {quantile(times, 0.5), quantile(times, 0.01), quantile(times, 0.99)};
+}
+
 json tileReport(const protocol::TileStats& stats, const protocol::TileInfo& info) {
     return {{"tile", info.name},
             {"rank", info.rank},
@@ -45,13 +50,21 @@ json frameReport(const PlayedFrame& frame, const protocol::Welcome& welcome) {
     for (const protocol::TileStats& stats : frame.done.tiles) {
         tiles.push_back(tileReport(stats, welcome.tiles[stats.tile]));
     }
-    return {{"frame", frame.frame}, {"time_ms", frame.done.timeMs}, {"tiles", std::move(tiles)}};
+    return {{"frame", frame.frame},
+            {"time_ms", frame.done.timeMs},
+            {"camera_to_swap_ms", frame.latencyMs},
+            {"tiles", std::move(tiles)}};
 }
 
 json settingsReport(const protocol::Welcome& welcome) {
     json settings = json::object();
     for (const protocol::NamedValue& setting : welcome.settings) settings[setting.name] = setting.value;
     return settings;
+}
+
+json timesReport(const std::optional<FrameTimes>& times) {
+    if (!times) return {{"median", nullptr}, {"p01", nullptr}, {"p99", nullptr}};
+    return {{"median", times->median}, {"p01", times->p01}, {"p99", times->p99}};
 }
 
 json summaryReport(const protocol::Welcome& welcome, const std::vector<PlayedFrame>& frames) {
@@ -65,9 +78,10 @@ json summaryReport(const protocol::Welcome& welcome, const std::vector<PlayedFra
         tiles.push_back(
             {{"tile", welcome.tiles[i].name}, {"rank", welcome.tiles[i].rank}, {"peak_rss_bytes", peaks[i]}});
     }
-    json times = {{"median", nullptr}, {"p01", nullptr}, {"p99", nullptr}};
-    if (const auto t = frameTimes(frames)) times = {{"median", t->median}, {"p01", t->p01}, {"p99", t->p99}};
-    return {{"frame_ms", std::move(times)}, {"tiles", std::move(tiles)}};
+    const auto latency = frames.empty() ? std::nullopt : std::optional(latencies(frames));
+    return {{"frame_ms", timesReport(frameTimes(frames))},
+            {"camera_to_swap_ms", timesReport(latency)},
+            {"tiles", std::move(tiles)}};
 }
 
 }  // namespace
@@ -76,8 +90,13 @@ std::optional<FrameTimes> frameTimes(const std::vector<PlayedFrame>& frames) {
     if (frames.size() < 2) return std::nullopt;
     std::vector<double> times;
     for (std::size_t i = 1; i < frames.size(); ++i) times.push_back(frames[i].done.timeMs);
-    std::sort(times.begin(), times.end());
-    return FrameTimes{quantile(times, 0.5), quantile(times, 0.01), quantile(times, 0.99)};
+    return quantiles(std::move(times));
+}
+
+FrameTimes latencies(const std::vector<PlayedFrame>& frames) {
+    std::vector<double> times;
+    for (const PlayedFrame& frame : frames) times.push_back(frame.latencyMs);
+    return quantiles(std::move(times));
 }
 
 std::string reportText(const protocol::Welcome& welcome, const std::vector<PlayedFrame>& frames) {

@@ -254,7 +254,9 @@ void fields(auto& io, Is<Control> auto& m) {
 }
 
 void fields(auto& io, Is<FrameDone> auto& m) {
-    io.integer(m.sequence), io.integer(m.frame), io.real(m.timeMs), cameraFields(io, m.camera);
+    io.integer(m.sequence), io.integer(m.frame), io.real(m.timeMs), io.real(m.sinceSwapMs);
+    io.require(m.sinceSwapMs >= 0, "a negative time");
+    cameraFields(io, m.camera);
     io.array(m.tiles, kMaxTiles, kTileStatsBytes, [&](auto& tile) { tileStatsFields(io, tile); });
 }
 

@@ -17,7 +17,7 @@
 // its limit before it allocates anything.
 namespace iwalk::protocol {
 
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr std::size_t kHeaderBytes = 8;
 inline constexpr std::uint32_t kMaxClientPayload = 1024;        // client to server
 inline constexpr std::uint32_t kMaxServerPayload = 512u << 20;  // server to client (an image of a large tile)
@@ -115,7 +115,8 @@ struct FrameDone {
     std::uint64_t frame = 0;     // the server's own count
     double timeMs = 0;           // from the swap before to this one
     std::vector<TileStats> tiles;
-    Camera camera{};  // that the wall shows
+    Camera camera{};         // that the wall shows
+    double sinceSwapMs = 0;  // from this swap to the sending of this message, >= 0
 };
 
 enum class ImageKind : std::uint8_t { png = 0, exr = 1, preview = 2 };

@@ -149,6 +149,16 @@ Result<void> parsePlpRays(Settings& settings, const std::string& text) {
     return {};
 }
 
+constexpr double kMinMaxFps = 0.1, kMaxMaxFps = 1000;
+
+Result<void> parseMaxFps(Settings& settings, const std::string& text) {
+    const auto fps = wholeNumber<double>(text);
+    if (!fps || !(*fps == 0 || (*fps >= kMinMaxFps && *fps <= kMaxMaxFps)))
+        return fail("not a number from {} to {}, nor 0", kMinMaxFps, kMaxMaxFps);
+    settings.maxFps = *fps;
+    return {};
+}
+
 constexpr double kMaxPreviewFps = 60;
 
 Result<void> parsePreviewFps(Settings& settings, const std::string& text) {
@@ -196,7 +206,7 @@ struct Row {
     std::string (*print)(const Settings&);
 };
 
-constexpr std::size_t kRows = 15;
+constexpr std::size_t kRows = 16;
 const std::array<Row, kRows>& rows() {
     static const std::array<Row, kRows> table{{
         {{"cache", "BYTES",
@@ -270,6 +280,11 @@ const std::array<Row, kRows>& rows() {
           "boxes of pages in view: green drawn, red read for this frame, blue left out"},
          parseShow,
          [](const Settings& s) { return std::string(kShows[static_cast<std::size_t>(s.show)]); }},
+        {{"max-fps", "FPS",
+          "frames that the wall draws in a second at most, 0.1 to 1000, default 0: no limit; one that the "
+          "wall keeps makes frames steady and leaves time for other programs"},
+         parseMaxFps,
+         [](const Settings& s) { return fmt::format("{}", s.maxFps); }},
         {{"preview-fps", "FPS",
           "small pictures of the wall that clients get in a second, 0 to 60, default 5; 0: none; more "
           "follows "

@@ -32,6 +32,7 @@ struct Settings {
     std::uint64_t plpBudget = 280000;              // of Mode::plp: triangles of a tile
     double plpRays = 0.3;                          // percent of the tile's pixels
     Show show = Show::none;
+    double maxFps = 0;                     // 0: no limit
     double previewFps = 5;                 // 0: no previews
     std::uint32_t previewSize = 640;       // px: the wall's longer side
     std::uint64_t previewRate = 1u << 20;  // bytes a second to each client

@@ -16,6 +16,7 @@
 #include "server/draw/gl_context.hpp"
 #include "server/frame/frame_loop.hpp"
 #include "server/frame/pattern_wall.hpp"
+#include "server/frame/same_dataset.hpp"
 #include "server/options.hpp"
 #include "server/present/tile_writer.hpp"
 #include "server/wall/assign.hpp"
@@ -67,6 +68,18 @@ Result<void> readInputs(ServerOptions& options, Dataset& dataset, const Sync& sy
     RETURN_IF_ERROR(readWall(options, sync));
     ASSIGN_OR_RETURN(dataset, openDataset(options.dataset));
     return {};
+}
+
+// Copies of a dataset on several hosts can differ; a shared one can change while it is opened.
+Result<void> compareDatasets(const ServerOptions& options, const Dataset& dataset, Sync& sync) {
+    const Result<std::uint64_t> mark = datasetMark(options.dataset);
+    // All ranks come here.
+    const std::vector<std::string> notes = sync.gatherText(datasetNote(mark ? *mark : 0, options.dataset));
+    if (!mark) return mark.error();
+    RETURN_IF_ERROR(sameDataset(notes, sync.hosts()));
+    ASSIGN_OR_RETURN(const Manifest now, loadManifest(options.dataset));
+    if (now.generation == dataset.manifest.generation) return {};
+    return fail("{} changed while it was opened: start again", options.dataset);
 }
 
 // Tiles by rank.
@@ -196,9 +209,13 @@ void announce(const ServerOptions& options, const Dataset& dataset, const Rank& 
 int serve(Sync& sync, ServerOptions& options) {
     Dataset dataset;
     if (!allFine(sync, readInputs(options, dataset, sync))) return EXIT_FAILURE;
+    if (!allFine(sync, compareDatasets(options, dataset, sync))) return EXIT_FAILURE;
     Shares shares;
     if (!allFine(sync, placeRanks(options.wall, sync, shares))) return EXIT_FAILURE;
     logTo(fmt::format("iwalk-server: rank {} on {}", sync.rank(), hostOf(sync)));
+    LastState last(sync.rank() == 0 ? options.resumeFile : "", options.settings);
+    const LastState::Known begin = last.load();
+    options.settings = begin.settings;
     Rank rank;
     if (!allFine(sync, prepare(rank, options, dataset, shares, sync))) return EXIT_FAILURE;
     // One rank's windows cannot all wait for one another.
@@ -206,8 +223,8 @@ int serve(Sync& sync, ServerOptions& options) {
     const SwapGroup together(driver, [&](bool mine) { return sync.agree(mine); });
     if (sync.rank() == 0) announce(options, dataset, rank, shares, sync.hosts(), together.joined());
     runFrames({sync, shares[static_cast<std::size_t>(sync.rank())], *rank.tiles, rank.outputs,
-               rank.gateway.get(), options.outputDirectory, sync.rank() == 0 ? options.resumeFile : "",
-               dataset, options.wall, options.settings, stopRequested});
+               rank.gateway.get(), options.outputDirectory, last, begin.camera, dataset, options.wall,
+               options.settings, stopRequested});
     return EXIT_SUCCESS;
 }
 

@@ -62,8 +62,10 @@ CommandLine parseCommandLine(int argc, char** argv, ServerOptions& options, std:
     app.add_option("--out", options.outputDirectory, "for --present file: writes DIR/frame-000000/TILE.png")
         ->type_name("DIR");
 
-    app.add_option("--resume", options.resumeFile,
-                   "rank 0 keeps the wall's last camera in this file, and begins with it when it is there")
+    app.add_option(
+           "--resume", options.resumeFile,
+           "rank 0 keeps the wall's last camera and the settings that clients have changed in this file, and "
+           "begins with them when it is there; it touches the file once a second while all ranks live")
         ->type_name("FILE");
     app.add_option(
            "--startup-timeout", options.startTimeout,

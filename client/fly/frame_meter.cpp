@@ -24,7 +24,7 @@ void FrameMeter::done(const protocol::FrameDone& frame, Time when) {
         const auto [sequence, since] = waiting_.front();
         waiting_.pop_front();
         if (sequence != frame.sequence) continue;
-        keep(latencies_, ms(when - since));
+        keep(latencies_, std::max(0.0, ms(when - since) - frame.sinceSwapMs));
         // After a rest the interval is the rest's.
         if (!swaps_.empty() && since < swaps_.back() + kRest) keep(intervals_, frame.timeMs);
     }
@@ -37,11 +37,10 @@ double FrameMeter::framesPerSecond(Time now) const {
         std::count_if(swaps_.begin(), swaps_.end(), [&](Time swap) { return swap + kSecond > now; }));
 }
 
-double FrameMeter::median(std::deque<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+FrameMeter::Spread FrameMeter::spread(std::deque<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    return {values[values.size() / 2], values[values.size() * 99 / 100]};
 }
 
 void FrameMeter::keep(std::deque<double>& values, double value) {

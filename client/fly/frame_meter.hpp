@@ -13,22 +13,26 @@ namespace iwalk::client {
 class FrameMeter {
   public:
     using Time = std::chrono::steady_clock::time_point;
-    static constexpr std::size_t kFrames = 60;  // that medians are over
+    static constexpr std::size_t kFrames = 200;  // that medians and 99th percentiles are over
 
+    // `when`: the hands made it.
     void sent(std::uint64_t sequence, Time when);
     void done(const protocol::FrameDone& frame, Time when);
     // A new connection: what was sent is not answered any more.
     void forget() { waiting_.clear(); }
 
     double framesPerSecond(Time now) const;  // of the last second
-    // From sending a camera to hearing that it is on the wall, ms: median; 0: not known yet.
-    double latencyMs() const { return median(latencies_); }
-    // From swap to swap, ms, in flight: median; 0: not known yet.
-    double intervalMs() const { return median(intervals_); }
+    struct Spread {
+        double median = 0, p99 = 0;  // ms; 0: not known yet
+    };
+    // From the moment of a camera to the swap that shows it.
+    Spread latency() const { return spread(latencies_); }
+    // From swap to swap in flight, as the wall measures it.
+    Spread interval() const { return spread(intervals_); }
     std::size_t unanswered() const { return waiting_.size(); }
 
   private:
-    static double median(std::deque<double> values);
+    static Spread spread(std::deque<double> values);
     static void keep(std::deque<double>& values, double value);
 
     std::deque<std::pair<std::uint64_t, Time>> waiting_;  // sequence numbers grow

@@ -37,8 +37,8 @@ WallState Session::state() const {
     const std::lock_guard lock(mutex_);
     WallState state = state_;
     state.framesPerSecond = meter_.framesPerSecond(Clock::now());
-    state.latencyMs = meter_.latencyMs();
-    state.intervalMs = meter_.intervalMs();
+    state.latency = meter_.latency();
+    state.interval = meter_.interval();
     return state;
 }
 
@@ -50,6 +50,7 @@ std::vector<protocol::TileImage> Session::previews() {
 void Session::setCamera(const Camera& camera) {
     const std::lock_guard lock(mutex_);
     camera_ = camera;
+    cameraSince_ = Clock::now();
     cameraDue_ = true;
     wake();
 }
@@ -161,7 +162,7 @@ std::vector<Message> Session::due() {
     if (cameraDue_ && meter_.unanswered() < kMostUnanswered) {
         cameraDue_ = false;
         messages.emplace_back(protocol::CameraRequest{++sequence_, 0, *camera_});
-        meter_.sent(sequence_, Clock::now());
+        meter_.sent(sequence_, cameraSince_);
     }
     return messages;
 }
@@ -178,6 +179,7 @@ Result<void> Session::take(Message message) {
     if (control->granted && !state_.control) {
         settingsDue_ = !settings_.empty();
         cameraDue_ = camera_ && (!state_.frame || state_.frame->camera != *camera_);
+        cameraSince_ = Clock::now();
     }
     if (!control->granted) {
         meter_.forget();  // its cameras will not be answered

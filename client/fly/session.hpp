@@ -28,9 +28,10 @@ struct WallState {
     std::uint32_t waiting = 0;  // clients that wait to take over
     std::string trouble;        // why there is no connection; empty: there is one
     std::vector<protocol::NamedValue> settings;
-    std::string refusal;                                        // of the last change; empty: none
-    std::shared_ptr<const protocol::FrameDone> frame;           // the newest
-    double framesPerSecond = 0, latencyMs = 0, intervalMs = 0;  // as FrameMeter has them
+    std::string refusal;                               // of the last change; empty: none
+    std::shared_ptr<const protocol::FrameDone> frame;  // the newest
+    double framesPerSecond = 0;                        // as FrameMeter has them
+    FrameMeter::Spread latency, interval;
 };
 
 // The client's side of a wall for as long as the window is open. A thread of its own connects, and connects
@@ -76,6 +77,7 @@ class Session {
     bool helloDue_ = false;
     std::optional<Camera> camera_;  // that the wall is to show
     bool cameraDue_ = false;
+    Clock::time_point cameraSince_;                // when it was asked for, or could be
     std::map<std::string, std::string> settings_;  // that were changed here
     bool settingsDue_ = false;
     std::uint64_t sequence_ = 0;

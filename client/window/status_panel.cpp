@@ -57,12 +57,13 @@ void drawFrame(const WallState& wall) {
         wall.framesPerSecond > 0 ? fmt::format("{:.0f}", wall.framesPerSecond) : "at rest");
     row("triangles", count(triangles));
     row("screen error", fmt::format("{:.2f} px", error));
-    if (wall.latencyMs > 0) {
-        const std::string frames =
-            wall.intervalMs > 0 ? fmt::format(", {:.1f} frames", wall.latencyMs / wall.intervalMs) : "";
-        row("camera to swap", fmt::format("{:.0f} ms{}", wall.latencyMs, frames));
-    }
-    if (wall.intervalMs > 0) row("swap to swap", fmt::format("{:.0f} ms", wall.intervalMs));
+    const auto spread = [](const FrameMeter::Spread& times) {
+        return fmt::format("{:.0f} ms, 99 %: {:.0f} ms", times.median, times.p99);
+    };
+    if (wall.latency.median > 0) row("camera to swap", spread(wall.latency));
+    if (wall.latency.median > 0 && wall.interval.median > 0)
+        row("in frames", fmt::format("{:.1f}", wall.latency.median / wall.interval.median));
+    if (wall.interval.median > 0) row("swap to swap", spread(wall.interval));
     row("longest wait", fmt::format("{:.1f} ms", barrier));
 }
 

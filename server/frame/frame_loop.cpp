@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "common/jpeg.hpp"
-#include "server/frame/last_camera.hpp"
+#include "server/gateway/frame_pace.hpp"
 #include "server/gateway/preview_pace.hpp"
 #include "server/present/tile_writer.hpp"
 
@@ -20,18 +20,24 @@ using Clock = std::chrono::steady_clock;
 
 class FrameLoop {
   public:
-    explicit FrameLoop(const FrameLoopParts& parts)
-        : parts_(parts), lastCamera_(parts.resumeFile), resumed_(lastCamera_.load()) {
+    explicit FrameLoop(const FrameLoopParts& parts) : parts_(parts), begin_(parts.begin) {
         parts_.sync.setIdleWork([this] { idle(); });
     }
     ~FrameLoop() { parts_.sync.setIdleWork({}); }
 
     void run() {
         for (FrameState state = nextState(); state.command != FrameState::quit; state = nextState())
-            if (state.command == FrameState::draw)
-                drawFrame(state);
-            else
-                sendPreview();
+            switch (state.command) {
+                case FrameState::draw:
+                    drawFrame(state);
+                    break;
+                case FrameState::meet:
+                    parts_.sync.barrier();
+                    lives();
+                    break;
+                default:
+                    sendPreview();
+            }
     }
 
   private:
@@ -44,6 +50,7 @@ class FrameLoop {
     void takePicture(protocol::TileImage picture);
     std::optional<protocol::CameraRequest> nextRequest();
     void drawFrame(const FrameState& state);
+    void lives();
     void present(const FrameState& state, std::size_t tile);
     void report(const FrameState& state, const std::vector<protocol::TileStats>& stats,
                 Clock::time_point swap);
@@ -52,8 +59,7 @@ class FrameLoop {
 
     const FrameLoopParts& parts_;
     TileWriter writer_;
-    LastCamera lastCamera_;          // rank 0's
-    std::optional<Camera> resumed_;  // to be drawn before a client asks for anything
+    std::optional<Camera> begin_;  // as in FrameLoopParts, until it is drawn
     std::uint64_t frame_ = 0;
     std::optional<Clock::time_point> lastSwap_;
     Settings settings_ = parts_.settings, next_ = settings_;  // drawn with, and (rank 0) from now on
@@ -62,7 +68,12 @@ class FrameLoop {
     std::uint64_t joined_ = 0;                     // rank 0: as in Gateway::PreviewWish
     std::uint64_t preview_ = 0;                    // counts them, the same on all ranks
     PreviewPace previews_;                         // rank 0
+    FramePace pace_;                               // rank 0
 };
+
+double ms(Clock::duration duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
 
 // Px of a preview for each px of the wall. Where screens stand freely, as if their tiles made a square.
 double previewScale(const Wall& wall, std::uint32_t size) {
@@ -84,17 +95,18 @@ FrameState FrameLoop::nextState() {
 
 // A client's camera, or the last one again when settings have changed.
 std::optional<protocol::CameraRequest> FrameLoop::nextRequest() {
-    lastCamera_.keep(Clock::now());
+    parts_.last.keep(Clock::now());
     std::optional<protocol::CameraRequest> request = parts_.gateway->nextRequest();
-    if (!request && resumed_) request = protocol::CameraRequest{0, 0, *resumed_};
-    resumed_.reset();
+    if (!request && begin_) request = protocol::CameraRequest{0, 0, *begin_};
+    begin_.reset();
     if (const std::optional<Settings> changed = parts_.gateway->newSettings()) {
         next_ = *changed;
         again_ = true;
+        parts_.last.changes(next_, Clock::now());
     }
     if (!request && again_) request = last_;
     if (!request) return request;
-    lastCamera_.shows(request->camera, Clock::now());
+    parts_.last.shows(request->camera, Clock::now());
     again_ = false;
     last_ = request;
     last_->sequence = 0;
@@ -108,13 +120,15 @@ FrameState FrameLoop::waitForRequest() {
     std::optional<protocol::CameraRequest> request;
     int pauseUs = 50;
     const auto stop = [this] { return parts_.stop || parts_.sync.askedToStop(); };
-    while (!stop() && !(request = nextRequest())) {
+    while (!stop() && !(request = pace_.begin(Clock::now(), [this] { return nextRequest(); }))) {
         idle();
-        if (last_ && previewDue()) {
-            state.command = FrameState::preview;
+        const bool preview = last_ && previewDue();
+        if (preview || parts_.last.beatDue(Clock::now())) {
+            state.command = preview ? FrameState::preview : FrameState::meet;
             return state;
         }
-        std::this_thread::sleep_for(std::chrono::microseconds(pauseUs));
+        const Clock::time_point now = Clock::now(), look = now + std::chrono::microseconds(pauseUs);
+        std::this_thread::sleep_until(pace_.due() > now ? std::min(look, pace_.due()) : look);
         pauseUs = std::min(1000, pauseUs * 2);
     }
     if (!request) {
@@ -157,10 +171,16 @@ void FrameLoop::drawFrame(const FrameState& state) {
     for (protocol::TileStats& tile : stats) tile.barrierWaitMs = waitedMs;
     for (const std::unique_ptr<TileOutput>& output : parts_.outputs) output->show();
     const Clock::time_point swap = Clock::now();
+    lives();
     for (std::size_t i = 0; i < parts_.tiles.size(); ++i) present(state, i);
     report(state, stats, swap);
     if (state.flags & FrameState::kPreview) sendPreview();
     ++frame_;
+}
+
+// All ranks have come to the barrier.
+void FrameLoop::lives() {
+    if (parts_.last.beatDue(Clock::now())) parts_.last.beat(Clock::now());
 }
 
 // Files are what is shown, captures what was drawn: the same but for projectors' blending.
@@ -191,10 +211,12 @@ void FrameLoop::report(const FrameState& state, const std::vector<protocol::Tile
         protocol::FrameDone done;
         done.sequence = state.sequence;
         done.frame = state.frame;
-        done.timeMs = std::chrono::duration<double, std::milli>(swap - lastSwap_.value_or(swap)).count();
+        done.timeMs = ms(swap - lastSwap_.value_or(swap));
+        done.sinceSwapMs = ms(Clock::now() - swap);
         done.tiles = std::move(all);
         done.camera = last_->camera;
         parts_.gateway->frameDone(std::move(done));
+        pace_.frameOver(Clock::now(), next_.maxFps);
     }
     lastSwap_ = swap;
     passCapturesOn();

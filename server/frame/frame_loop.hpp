@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "server/frame/last_state.hpp"
 #include "server/frame/rank_tiles.hpp"
 #include "server/gateway/gateway.hpp"
 #include "server/present/tile_output.hpp"
@@ -20,7 +21,8 @@ struct FrameLoopParts {
     std::vector<std::unique_ptr<TileOutput>>& outputs;  // likewise
     Gateway* gateway = nullptr;                         // on rank 0
     std::string outputDirectory;  // --present file: where tiles are written; empty: nowhere
-    std::string resumeFile;       // rank 0 begins with its camera, and keeps the last one there; empty: none
+    LastState& last;              // rank 0's; others keep nothing
+    std::optional<Camera> begin;  // rank 0: to be drawn before a client asks for anything
     const Dataset& dataset;
     const Wall& wall;
     Settings settings;              // to begin with

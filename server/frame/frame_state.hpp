@@ -10,8 +10,9 @@ namespace iwalk {
 // What every tile must agree on in a frame; rank 0 makes it and broadcasts it as it is.
 struct FrameState {
     static constexpr std::uint32_t kMagic = 0x53465749;  // "IWFS"
-    static constexpr std::uint32_t kVersion = 2;
-    enum Command : std::uint32_t { draw = 0, quit = 1, preview = 2 };  // preview: of what was drawn last
+    static constexpr std::uint32_t kVersion = 3;
+    // preview: of what was drawn last; meet: all come to the barrier, as a sign of life.
+    enum Command : std::uint32_t { draw = 0, quit = 1, preview = 2, meet = 3 };
     static constexpr std::uint32_t kPreview = 1u << 8;  // among the flags: send a small picture, too
 
     std::uint32_t magic = kMagic;

@@ -20,8 +20,9 @@
 namespace iwalk {
 namespace {
 
-constexpr int kTileTag = 1, kStopTag = 2, kVoteTag = 3;
-constexpr std::uint32_t kTileMagic = 0x4C545749;  // "IWTL"
+constexpr int kTileTag = 1, kStopTag = 2, kVoteTag = 3, kHereTag = 4, kGoTag = 5;
+constexpr int kLongestPause = 1000, kBarrierPause = 400;  // us
+constexpr std::uint32_t kTileMagic = 0x4C545749;          // "IWTL"
 constexpr std::uint64_t kMaxTileBytes = std::uint64_t{1} << 30;
 
 // Goes before a captured tile's bytes in one message.
@@ -48,12 +49,14 @@ int byteCount(std::size_t bytes) {
 // Sleeps that grow: short waits end quickly, long ones cost next to nothing.
 class Patience {
   public:
+    explicit Patience(int longest = kLongestPause) : longest_(longest) {}
     void wait() {
         std::this_thread::sleep_for(std::chrono::microseconds(pause_));
-        pause_ = std::min(1000, pause_ + pause_ / 2);
+        pause_ = std::min(longest_, pause_ + pause_ / 2);
     }
 
   private:
+    const int longest_;  // us
     int pause_ = 20;
 };
 
@@ -132,13 +135,7 @@ class MpiSync : public Sync {
         CHECK_OP(state.version, ==, FrameState::kVersion);
     }
 
-    double barrier() override {
-        const auto start = std::chrono::steady_clock::now();
-        MPI_Request request;
-        must(MPI_Ibarrier(world_, &request));
-        finish(request);
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    }
+    double barrier() override;
 
     std::vector<protocol::TileStats> gather(const std::vector<protocol::TileStats>& mine) override;
 
@@ -151,9 +148,10 @@ class MpiSync : public Sync {
         MPI_Request request = MPI_REQUEST_NULL;
     };
 
-    void finish(MPI_Request& request) {
-        Patience patience;
-        for (int done = 0; must(MPI_Test(&request, &done, MPI_STATUS_IGNORE)), !done;) {
+    void finish(MPI_Request& request) { finish(&request, 1, kLongestPause); }
+    void finish(MPI_Request* requests, int count, int longestPause) {
+        Patience patience(longestPause);
+        for (int done = 0; must(MPI_Testall(count, requests, &done, MPI_STATUSES_IGNORE)), !done;) {
             if (idleWork_) idleWork_();
             patience.wait();
         }
@@ -174,6 +172,27 @@ class MpiSync : public Sync {
     std::vector<protocol::TileImage> own_;  // rank 0's, which need no MPI
     bool stopAsked_ = false;
 };
+
+// All tell rank 0 that they are here, then rank 0 tells all to go on. MPI_Ibarrier takes log2(size) steps one
+// after the other, and each step waits for somebody's next poll; these are two, whatever the size.
+double MpiSync::barrier() {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<MPI_Request> open(rank_ == 0 ? static_cast<std::size_t>(size_) - 1 : 2);
+    const auto finishAll = [&] { finish(open.data(), static_cast<int>(open.size()), kBarrierPause); };
+    if (rank_ == 0) {
+        for (int i = 1; i < size_; ++i)
+            must(
+                MPI_Irecv(nullptr, 0, MPI_BYTE, i, kHereTag, world_, &open[static_cast<std::size_t>(i) - 1]));
+        finishAll();
+        for (int i = 1; i < size_; ++i)
+            must(MPI_Isend(nullptr, 0, MPI_BYTE, i, kGoTag, world_, &open[static_cast<std::size_t>(i) - 1]));
+    } else {
+        must(MPI_Isend(nullptr, 0, MPI_BYTE, 0, kHereTag, world_, &open[0]));
+        must(MPI_Irecv(nullptr, 0, MPI_BYTE, 0, kGoTag, world_, &open[1]));
+    }
+    finishAll();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
 bool MpiSync::agree(bool mine) {
     int vote = mine ? 1 : 0;

@@ -45,9 +45,9 @@ TEST_F(SessionTest, SendsTheNewestCameraAndMeasures) {
         return frame && frame->camera.eye.x == 100;
     }));
     const WallState state = session.state();
-    EXPECT_GE(state.latencyMs, 3);
+    EXPECT_GE(state.latency.median, 3);
     EXPECT_GT(state.framesPerSecond, 0);
-    EXPECT_GT(state.intervalMs, 0);
+    EXPECT_GT(state.interval.median, 0);
     EXPECT_GT(news_, 2);
     EXPECT_EQ(state.trouble, "");
     EXPECT_TRUE(std::ranges::is_sorted(wall.drawn()));

@@ -36,10 +36,10 @@ std::string refusal(const std::vector<std::byte>& bytes) {
 
 TEST(Protocol, GoldenBytes) {
     EXPECT_EQ(hex(encode(Hello{})),
-              "0800000001000000030000000100"
+              "0800000001000000040000000100"
               "0000");
     EXPECT_EQ(hex(encode(Hello{kVersion, false, true, "key"})),
-              "0b00000001000000030000000001"
+              "0b00000001000000040000000001"
               "03006b6579");
     EXPECT_EQ(hex(encode(Control{true, 2})), "05000000040000000102000000");
     EXPECT_EQ(hex(encode(ChangeSettings{{{"near", "1"}}})),
@@ -97,7 +97,7 @@ TEST(Protocol, WelcomeRoundTrip) {
 }
 
 TEST(Protocol, FrameDoneRoundTrip) {
-    FrameDone done{9, 10, 16.5, {{}, {}}, {{1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 50}};
+    FrameDone done{9, 10, 16.5, {{}, {}}, {{1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 50}, 2.25};
     done.tiles[1] = {.tile = 1,
                      .guessMs = 2.5,
                      .pyramidMs = 3.5,
@@ -199,9 +199,9 @@ TEST(Protocol, ImpossibleCamerasRefused) {
 
 TEST(Protocol, CountsBeyondThePayloadRefused) {
     std::vector<std::byte> bytes = encode(FrameDone{1, 1, 0, {TileStats{}}});
-    bytes[kHeaderBytes + 104] = std::byte{2};  // two tiles in the bytes of one
+    bytes[kHeaderBytes + 112] = std::byte{2};  // two tiles in the bytes of one
     EXPECT_NE(refusal(bytes).find("items"), std::string::npos);
-    bytes[kHeaderBytes + 107] = std::byte{0xff};
+    bytes[kHeaderBytes + 115] = std::byte{0xff};
     EXPECT_NE(refusal(bytes).find("items"), std::string::npos);
 }
 

@@ -16,9 +16,10 @@ std::string refusal(const std::string& name, const std::string& text) {
 TEST(Settings, TableNamesEverySetting) {
     std::vector<std::string> names;
     for (const SettingInfo& info : settingTable()) names.emplace_back(info.name);
-    EXPECT_EQ(names, (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background",
-                                               "near", "level", "mode", "occlusion", "plp-budget", "plp-rays",
-                                               "show", "preview-fps", "preview-size", "preview-rate"}));
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"cache", "fetch-threads", "shading", "ramp", "background", "near",
+                                        "level", "mode", "occlusion", "plp-budget", "plp-rays", "show",
+                                        "max-fps", "preview-fps", "preview-size", "preview-rate"}));
 }
 
 TEST(Settings, DefaultsAreWhatTheHelpSays) {
@@ -34,14 +35,14 @@ TEST(Settings, DefaultsAreWhatTheHelpSays) {
 TEST(Settings, TextIsReadBack) {
     Settings settings;
     for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
-             {"cache", "512M"},      {"cache", "65537"},        {"fetch-threads", "64"},
-             {"shading", "smooth"},  {"shading", "flat"},       {"ramp", "height"},
-             {"ramp", "none"},       {"background", "#203040"}, {"near", "0.1"},
-             {"level", "full"},      {"level", "12"},           {"mode", "plp"},
-             {"mode", "frustum"},    {"mode", "cplp"},          {"occlusion", "queries"},
-             {"show", "overdraw"},   {"plp-budget", "70000"},   {"plp-rays", "0.05"},
-             {"preview-fps", "0"},   {"preview-fps", "12.5"},   {"preview-size", "320"},
-             {"preview-rate", "64k"}}) {
+             {"cache", "512M"},       {"cache", "65537"},        {"fetch-threads", "64"},
+             {"shading", "smooth"},   {"shading", "flat"},       {"ramp", "height"},
+             {"ramp", "none"},        {"background", "#203040"}, {"near", "0.1"},
+             {"level", "full"},       {"level", "12"},           {"mode", "plp"},
+             {"mode", "frustum"},     {"mode", "cplp"},          {"occlusion", "queries"},
+             {"show", "overdraw"},    {"plp-budget", "70000"},   {"plp-rays", "0.05"},
+             {"max-fps", "0"},        {"max-fps", "59.94"},      {"preview-fps", "0"},
+             {"preview-fps", "12.5"}, {"preview-size", "320"},   {"preview-rate", "64k"}}) {
         ASSERT_TRUE(setSetting(settings, name, text).ok()) << name << " " << text;
         EXPECT_EQ(settingText(settings, name), text);
     }

@@ -1,5 +1,6 @@
 #include <dirent.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <random>
@@ -46,6 +47,12 @@ class BadClients : public ::testing::Test {
     std::unique_ptr<Gateway> gateway_;
     std::uint64_t sequence_ = 0;
 };
+
+// What is allocated by this process.
+std::size_t heapBytes() {
+    const struct mallinfo2 info = ::mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
 
 int openDescriptors() {
     int count = 0;
@@ -176,20 +183,42 @@ TEST_F(BadClients, OneTooManyIsTurnedAway) {
     expectFrames(clients[0]);
 }
 
+// One that trickles its messages holds nobody up: all frames of the other come while it has said half.
+TEST_F(BadClients, ASlowTalkerDelaysNoFrame) {
+    Gateway::Limits limits;
+    limits.helloTimeout = std::chrono::minutes(2);
+    open(limits);
+    RawClient good = connect(), slow = connect();
+    ASSERT_TRUE(good.greet());
+    const std::vector<std::byte> hello = protocol::encode(protocol::Hello{});
+    for (const std::byte& b : hello) {
+        ASSERT_TRUE(slow.sendBytes(std::span(&b, 1)));
+        for (int i = 0; i < 5; ++i) expectFrames(good);
+    }
+    EXPECT_FALSE(slow.receiveA<Control>()->granted);  // it was heard, too
+}
+
 TEST_F(BadClients, ComingAndGoingLeavesNothingBehind) {
     open();
     RawClient good = connect();
     ASSERT_TRUE(good.greet());
     const int before = openDescriptors();
-    for (int i = 0; i < 200; ++i) {
-        // Late clients may be turned away while early ones are still being noticed as gone: that is part of
-        // it.
-        RawClient visitor = connect();
-        if (i % 3 == 1) visitor.send(protocol::Hello{});
-        if (i % 3 == 2) visitor.sendBytes(std::vector<std::byte>(100, std::byte{0xff}));
-    }
-    EXPECT_TRUE(eventually([&] { return openDescriptors() <= before; }));
+    const auto visits = [&](int count) {
+        for (int i = 0; i < count; ++i) {
+            // Late clients may be turned away while early ones are still being noticed as gone: that is part
+            // of it.
+            RawClient visitor = connect();
+            if (i % 3 == 1) visitor.send(protocol::Hello{});
+            if (i % 3 == 2) visitor.sendBytes(std::vector<std::byte>(100, std::byte{0xff}));
+        }
+        EXPECT_TRUE(eventually([&] { return openDescriptors() <= before; }));
+    };
+    visits(200);
+    const std::size_t settled = heapBytes();
+    visits(1000);
     expectFrames(good);
+    // A connection that stayed would keep its buffers, more than a kilobyte of them.
+    EXPECT_LT(heapBytes(), settled + 300'000);
 }
 
 TEST_F(BadClients, OutOfDescriptorsIsSurvived) {

@@ -61,6 +61,7 @@ TEST_F(ClientPlayback, RealtimeGoesForwardToTheLastFrame) {
     realtime.fps = 1000;
     const auto done = run(realtime, nullptr);
     ASSERT_TRUE(done.ok()) << done.error().message;
+    EXPECT_NE(done->find("camera to swap"), std::string::npos);
     const std::vector<double> drawn = wall.drawn();
     ASSERT_FALSE(drawn.empty());
     EXPECT_TRUE(std::is_sorted(drawn.begin(), drawn.end()));

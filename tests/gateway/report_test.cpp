@@ -26,7 +26,7 @@ TEST(Report, HasTheKeysOfTheDesign) {
     protocol::FrameDone done{1, 1, 20, {{}, {}}};
     done.tiles[1].tile = 1;
     done.tiles[1].peakRssBytes = 99;
-    const json report = json::parse(reportText(testing::smallWall(), {{0, done}, {1, done}}));
+    const json report = json::parse(reportText(testing::smallWall(), {{0, done, 30}, {1, done, 30}}));
     EXPECT_EQ(keys(report),
               (std::vector<std::string>{"dataset", "frames", "settings", "summary", "version", "wall"}));
     EXPECT_EQ(report["version"], "9.8.7");
@@ -34,7 +34,8 @@ TEST(Report, HasTheKeysOfTheDesign) {
     EXPECT_EQ(report["wall"], json({{"width_px", 36}, {"height_px", 8}, {"tiles", 2}}));
     EXPECT_EQ(report["settings"], json({{"cache", "1G"}, {"mode", "cplp"}}));
     ASSERT_EQ(report["frames"].size(), 2u);
-    EXPECT_EQ(keys(report["frames"][1]), (std::vector<std::string>{"frame", "tiles", "time_ms"}));
+    EXPECT_EQ(keys(report["frames"][1]),
+              (std::vector<std::string>{"camera_to_swap_ms", "frame", "tiles", "time_ms"}));
     EXPECT_EQ(report["frames"][1]["frame"], 1);
     EXPECT_EQ(keys(report["frames"][1]["tiles"][1]), (std::vector<std::string>{"adapt_ms",
                                                                                "bad_pages",
@@ -59,6 +60,7 @@ TEST(Report, HasTheKeysOfTheDesign) {
                                                                                "visibility_ms"}));
     EXPECT_EQ(report["frames"][1]["tiles"][1]["tile"], "right");
     EXPECT_EQ(report["summary"]["frame_ms"], json({{"median", 20.0}, {"p01", 20.0}, {"p99", 20.0}}));
+    EXPECT_EQ(report["summary"]["camera_to_swap_ms"], json({{"median", 30.0}, {"p01", 30.0}, {"p99", 30.0}}));
     EXPECT_EQ(report["summary"]["tiles"][1], json({{"tile", "right"}, {"rank", 1}, {"peak_rss_bytes", 99}}));
 }
 
