@@ -27,7 +27,7 @@ struct Arguments {
     BuildOptions build;
     std::string memory = "512M", up = "z";
     int step = 0;
-    double noData = 0;
+    double noData = 0, seaLevel = 0;
     std::string dataset, picture;
     bool json = false;
     GenerateOptions generate;
@@ -74,6 +74,11 @@ void addInputs(CLI::App* command, Arguments& arguments) {
     command
         ->add_option("--no-data", arguments.noData, "Of height maps: the sample value that stands for a hole")
         ->type_name("VALUE");
+    command
+        ->add_option("--sea-level", arguments.seaLevel,
+                     "Of height maps: colours by height, blue up to this height in model units, green to "
+                     "white above. Without it they have no colours, which takes less room")
+        ->type_name("UNITS");
 }
 
 CLI::App* addBuild(CLI::App& app, Arguments& arguments) {
@@ -209,6 +214,7 @@ int run(int argc, char** argv) {
     arguments.build.import.yUp = arguments.up == "y";
     for (const CLI::App* reader : {build, insert, measure}) {
         if (reader->count("--no-data") > 0) arguments.build.import.noData = arguments.noData;
+        if (reader->count("--sea-level") > 0) arguments.build.import.seaLevel = arguments.seaLevel;
     }
     if (measure->parsed()) return report(runMeasure(arguments.build, arguments.json));
     const Result<std::uint64_t> memory = parseBytes(arguments.memory);

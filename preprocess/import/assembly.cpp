@@ -102,9 +102,7 @@ class AssemblyImporter : public Importer {
             add(part, placements, summary);
             parts_.push_back(part);
         }
-        output.flush();
-        summary.vertices = output.count();
-        summary.bounds = output.bounds();
+        output.finish(summary);
         if (unknownBound_) summary.triangleBound = 0;
         if (!(summary.precision > 0)) summary.precision = textPrecision(summary.bounds);
         summary_ = summary;

@@ -20,13 +20,15 @@ constexpr std::uint64_t kBytesASecond = 1'000'000;                     // of a f
 constexpr unsigned kClockFactor = 4;  // where others have most of the processor
 // A triangle takes 120 bytes, in files 4 at least, compressed ones apart: with instances, more.
 constexpr std::uint64_t kExpansion = 256, kLeastOutput = std::uint64_t{256} << 20;
+// Heights become floats. Deflate packs up to 1032 bytes in one, which a sea or a hole does of 8-bit samples;
+// then a byte of the file is some microseconds of work.
+constexpr std::uint64_t kHeightExpansion = 4 * 1032, kHeightBytesASecond = 12'000;
 
 // What both kinds share: the program's output.
 class ForeignImporter : public Importer {
   public:
     ForeignImporter(std::string path, std::unique_ptr<SpillFile> file, const ExchangeHeader& header)
         : path_(std::move(path)), file_(std::move(file)), header_(header) {}
-    bool needsScan() const override { return false; }
 
   protected:
     const std::string path_;
@@ -46,10 +48,8 @@ class ForeignTriangles : public ForeignImporter {
             ++summary.triangleBound;
             return Result<void>();
         }));
-        output.flush();
-        summary.vertices = output.count();
-        summary.bounds = output.bounds();
-        summary.precision = coordinateSpacing(output.bounds(), 23);
+        output.finish(summary);
+        summary.precision = coordinateSpacing(summary.bounds, 23);
         summary.colors = (header_.flags & ExchangeHeader::kColors) != 0;
         summary.normals = (header_.flags & ExchangeHeader::kNormals) != 0;
         if (progress) progress(1);
@@ -73,6 +73,7 @@ class ForeignTriangles : public ForeignImporter {
         if (progress) progress(1);
         return output.counts();
     }
+    bool needsScan() const override { return false; }
 
   private:
     template <class Visit>
@@ -96,7 +97,8 @@ class ForeignHeights : public ForeignImporter {
     ForeignHeights(std::string path, std::unique_ptr<SpillFile> file, const ExchangeHeader& header,
                    const ImportChoices& choices)
         : ForeignImporter(std::move(path), std::move(file), header),
-          grid_(header.columns, header.rows, choices) {}
+          grid_(header.columns, header.rows, choices),
+          seaLevel_(choices.seaLevel) {}
 
     Result<ImportSummary> scan(const VertexSink& vertices, const ProgressSink& progress) override {
         VertexOutput output(vertices);
@@ -105,12 +107,12 @@ class ForeignHeights : public ForeignImporter {
                 output.add(grid_.point(column, row, heights[column]));
             return Result<void>();
         }));
-        output.flush();
         ImportSummary summary;
-        summary.vertices = output.count();
         summary.triangleBound = 2 * (header_.columns - 1) * (header_.rows - 1);
-        summary.bounds = output.bounds();
-        summary.precision = coordinateSpacing(output.bounds(), 23);
+        output.finish(summary);
+        summary.precision = coordinateSpacing(summary.bounds, 23);
+        summary.colors = seaLevel_.has_value();
+        if (seaLevel_) ramp_.emplace(summary.bounds.min.z, *seaLevel_, summary.bounds.max.z);
         return summary;
     }
 
@@ -118,7 +120,7 @@ class ForeignHeights : public ForeignImporter {
         TriangleOutput output(false, sink);
         std::vector<float> above;
         const auto stripTo = [&](std::uint64_t row, std::span<const float> heights) -> Result<void> {
-            if (row > 0) RETURN_IF_ERROR(grid_.strip(row, above, heights, output));
+            if (row > 0) RETURN_IF_ERROR(grid_.strip(row, above, heights, ramp_ ? &*ramp_ : nullptr, output));
             above.assign(heights.begin(), heights.end());
             return {};
         };
@@ -126,6 +128,8 @@ class ForeignHeights : public ForeignImporter {
         RETURN_IF_ERROR(output.flush());
         return output.counts();
     }
+    // The lowest and the highest are what colours go by.
+    bool needsScan() const override { return seaLevel_.has_value(); }
 
   private:
     template <class Visit>
@@ -146,7 +150,9 @@ class ForeignHeights : public ForeignImporter {
         return {};
     }
 
-    HeightGrid grid_;
+    const HeightGrid grid_;
+    const std::optional<double> seaLevel_;  // model units
+    std::optional<HeightRamp> ramp_;        // after scan()
 };
 
 }  // namespace
@@ -157,9 +163,9 @@ Result<std::unique_ptr<Importer>> openForeign(const std::string& path, ForeignKi
     ASSIGN_OR_RETURN(std::unique_ptr<SpillFile> output, SpillFile::create(limits.spillDirectory));
     ImportProcessLimits process;
     process.memoryBytes = std::max(limits.memoryBytes, kLeastMemoryBytes);
-    process.fileBytes = std::max(kLeastOutput, fileBytes * kExpansion);
-    process.cpuSeconds =
-        kLeastSeconds + static_cast<unsigned>(std::min<std::uint64_t>(fileBytes / kBytesASecond, 100'000));
+    process.fileBytes = std::max(kLeastOutput, fileBytes * (heights ? kHeightExpansion : kExpansion));
+    const std::uint64_t wanted = fileBytes / (heights ? kHeightBytesASecond : kBytesASecond);
+    process.cpuSeconds = kLeastSeconds + static_cast<unsigned>(std::min<std::uint64_t>(wanted, 100'000));
     process.seconds = process.cpuSeconds * kClockFactor;
     RETURN_IF_ERROR(runImportProcess(path, heights, process, *output, limits.spillDirectory));
 

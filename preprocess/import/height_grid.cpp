@@ -16,7 +16,8 @@ glm::dvec3 HeightGrid::point(std::uint64_t column, std::uint64_t row, float heig
 }
 
 Result<void> HeightGrid::strip(std::uint64_t row, std::span<const float> above,
-                               std::span<const float> heights, TriangleOutput& output) const {
+                               std::span<const float> heights, const HeightRamp* ramp,
+                               TriangleOutput& output) const {
     for (std::size_t column = 0; column + 1 < columns_; ++column) {
         // Around the cell, counter-clockwise seen from above.
         const std::array<glm::dvec3, 4> corners{
@@ -26,7 +27,9 @@ Result<void> HeightGrid::strip(std::uint64_t row, std::span<const float> above,
         std::size_t samples = 0;
         for (const glm::dvec3& corner : corners) samples += isFinite(corner);
         for (const glm::dvec3& corner : corners) {
-            if (samples >= 3 && isFinite(corner)) RETURN_IF_ERROR(output.corner({corner, 0, glm::vec3(0)}));
+            if (samples < 3 || !isFinite(corner)) continue;
+            const std::uint32_t color = ramp != nullptr ? ramp->color(corner.z) : 0;
+            RETURN_IF_ERROR(output.corner({corner, color, glm::vec3(0)}));
         }
     }
     return {};

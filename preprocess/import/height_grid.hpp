@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "preprocess/import/height_ramp.hpp"
 #include "preprocess/import/importer.hpp"
 #include "preprocess/import/triangle_output.hpp"
 
@@ -17,8 +18,9 @@ class HeightGrid {
     // Its z is NaN at a hole.
     glm::dvec3 point(std::uint64_t column, std::uint64_t row, float height) const;
     // The triangles between row - 1 and `row`: two for four samples, one for three. They face upwards.
+    // Coloured by `ramp`, if it is not null.
     Result<void> strip(std::uint64_t row, std::span<const float> above, std::span<const float> heights,
-                       TriangleOutput& output) const;
+                       const HeightRamp* ramp, TriangleOutput& output) const;
 
   private:
     std::uint64_t columns_, rows_;

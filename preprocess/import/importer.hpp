@@ -73,6 +73,7 @@ struct ImportChoices {
     // and the height that stands for a hole.
     double spacing = 1, heightScale = 1;
     std::optional<double> noData;
+    std::optional<double> seaLevel;  // model units: colours them by height
 };
 
 struct ImportLimits {

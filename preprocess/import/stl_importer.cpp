@@ -36,10 +36,8 @@ class StlImporter : public Importer {
             ++summary.triangleBound;
             return Result<void>();
         }));
-        output.flush();
-        summary.vertices = output.count();
-        summary.bounds = output.bounds();
-        summary.precision = coordinateSpacing(output.bounds(), 23);
+        output.finish(summary);
+        summary.precision = coordinateSpacing(summary.bounds, 23);
         return summary;
     }
 

@@ -23,17 +23,20 @@ class VertexOutput {
         batch_.push_back(position);
         if (batch_.size() == kBatch) flush();
     }
-    // Hands on what is left. Call at the end.
+    // Hands on what is left, and says what came. Call at the end.
+    void finish(ImportSummary& summary) {
+        flush();
+        summary.vertices = count_;
+        summary.bounds = bounds_;
+    }
+
+  private:
     void flush() {
         count_ += batch_.size();
         if (sink_ && !batch_.empty()) sink_(batch_);
         batch_.clear();
     }
 
-    std::uint64_t count() const { return count_; }  // after flush()
-    const ModelBox& bounds() const { return bounds_; }
-
-  private:
     static constexpr std::size_t kBatch = 4096;
     const VertexSink& sink_;
     std::vector<glm::dvec3> batch_;

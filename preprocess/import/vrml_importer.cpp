@@ -26,10 +26,8 @@ class VrmlImporter : public Importer {
             summary.colors = summary.colors || color || mesh.colored();
             return Result<void>();
         }));
-        output.flush();
-        summary.vertices = output.count();
-        summary.bounds = output.bounds();
-        summary.precision = textPrecision(output.bounds());
+        output.finish(summary);
+        summary.precision = textPrecision(summary.bounds);
         return summary;
     }
 

@@ -12,8 +12,9 @@ namespace {
 
 using Kind = VrmlLexer::Kind;
 
-constexpr unsigned kMaxDepth = 128;               // of nodes in nodes; a node that uses itself ends here
-constexpr std::uint64_t kMaxUses = 1'000'000;     // in one walk
+constexpr unsigned kMaxDepth = 128;  // of nodes in nodes; a node that uses itself ends here
+// Of nodes, in one walk: as many as the file has bytes, within these. A few lines can ask for any number.
+constexpr std::uint64_t kFewUses = 100'000, kMaxUses = 1'000'000;
 constexpr std::uint64_t kNameOverheadBytes = 96;  // of an entry in the map
 constexpr std::size_t kMaxLeftOut = 64;           // kinds that are counted
 
@@ -49,6 +50,14 @@ struct TransformFields {
 };
 
 }  // namespace
+
+VrmlScene::VrmlScene(const RandomAccessFile& file, const std::string& path, std::uint64_t memoryBytes,
+                     const Visit& visit)
+    : lexer_(file, path),
+      memoryBytes_(memoryBytes),
+      maxUses_(std::clamp(file.size(), kFewUses, kMaxUses)),
+      visit_(visit),
+      mesh_(memoryBytes / 4 * 3) {}
 
 void VrmlScene::define(std::string_view name, const VrmlLexer::Place& place) {
     const auto [at, added] = definitions_.insert_or_assign(std::string(name), place);
@@ -158,7 +167,7 @@ Result<void> VrmlScene::use(const Context& context) {
     const auto found = definitions_.find(used);
     if (found == definitions_.end())
         return lexer_.bad(fmt::format("USE {}, but nothing has that name", quote(used)));
-    if (++uses_ > kMaxUses) return lexer_.bad(fmt::format("nodes are used more than {} times", kMaxUses));
+    if (++uses_ > maxUses_) return lexer_.bad(fmt::format("nodes are used more than {} times", maxUses_));
     const VrmlLexer::Place behind = lexer_.place();
     furthest_ = std::max(furthest_, behind.offset);
     lexer_.seek(found->second);

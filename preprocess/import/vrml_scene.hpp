@@ -22,8 +22,7 @@ class VrmlScene : private VrmlLexer::Definitions {
 
     // `file`, `path` and `visit` must outlive the scene. `memoryBytes` bounds a face set, and names.
     VrmlScene(const RandomAccessFile& file, const std::string& path, std::uint64_t memoryBytes,
-              const Visit& visit)
-        : lexer_(file, path), memoryBytes_(memoryBytes), visit_(visit), mesh_(memoryBytes / 4 * 3) {}
+              const Visit& visit);
 
     Result<void> walk();
     // Of the walk so far, bytes; USE makes it jump.
@@ -57,7 +56,7 @@ class VrmlScene : private VrmlLexer::Definitions {
     Result<glm::dvec4> numbers(std::size_t count);
 
     VrmlLexer lexer_;
-    std::uint64_t memoryBytes_;
+    const std::uint64_t memoryBytes_, maxUses_;
     const Visit& visit_;
     std::unordered_map<std::string, VrmlLexer::Place> definitions_;
     std::uint64_t nameBytes_ = 0, uses_ = 0, furthest_ = 0;

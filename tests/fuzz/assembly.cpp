@@ -19,5 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 std::vector<std::string> iwalk::fuzzSeeds() {
     return {
         R"({"parts": [{"file": "a.ply", "matrix": [1,0,0,3, 0,1,0,0, 0,0,1,0, 0,0,0,1], "color": "#ff8000"},
-                          {"file": "b/../a.ply"}, {"file": "c.json"}]})"};
+                          {"file": "b/../a.ply"}, {"file": "c.json"}]})",
+        R"({"name": [null, true, {"parts": 1}], "parts": [{"file": "\u00e9\/d.wrl", "color": "#AbCdEf",
+            "matrix": [-1e-3,0.0,0,-0, 0,1E3,0,0, 0,0,1,1e300, 0,0,0,1]}]})"};
 }

@@ -12,7 +12,8 @@
 #include "common/file.hpp"
 #include "preprocess/import/importer.hpp"
 
-// Each target is a program of plain_main.cpp, and can be one of libFuzzer's. It has these two functions.
+// Each target is a program of plain_main.cpp or, with the preset `fuzz`, one of libFuzzer's. It has these two
+// functions.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 namespace iwalk {
 // Inputs to begin with, good ones.

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "preprocess/import/exchange.hpp"
+#include "preprocess/import/height_ramp.hpp"
 #include "preprocess/import/import_process.hpp"
 #include "tests/import/import_fixture.hpp"
 
@@ -182,6 +183,32 @@ TEST_F(ForeignTest, heightMapsWithHoles) {
     EXPECT_EQ(importHeights("a.tif", choices)->triangles.size(), 3u);
     directory_.write("a.tif", tiff(3, 2, {5, 9, 5, 5, 9, 5}));
     EXPECT_EQ(importHeights("a.tif", choices)->triangles.size(), 0u);
+}
+
+TEST_F(ForeignTest, heightMapsWithASea) {
+    directory_.write("a.tif", tiff(3, 2, {0, 100, 200, 50, 101, 300}));
+    ImportChoices choices;
+    EXPECT_FALSE(importHeights("a.tif", choices)->summary.colors);
+    choices.heightScale = 2, choices.seaLevel = 200;
+    const auto read = importHeights("a.tif", choices);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_TRUE(read->summary.colors);
+    const auto blue = [](std::uint32_t color) { return color >> 16 & 255; };
+    for (const Triangle& triangle : read->triangles) {
+        for (const Corner& corner : triangle) {
+            const double z = corner.position.z;
+            const std::uint32_t red = corner.color & 255, green = corner.color >> 8 & 255;
+            EXPECT_EQ(corner.color >> 24, 255u);
+            EXPECT_EQ(blue(corner.color) > green && green > red, z <= 200) << z;
+            EXPECT_EQ(corner.color == 0xfff8f8f8, z == 600) << z;  // the highest
+            EXPECT_EQ(corner.color == 0xff5c2a10, z == 0) << z;    // the deepest
+        }
+    }
+    // A sea without depths.
+    const HeightRamp flat(5, 5, 9);
+    EXPECT_EQ(flat.color(5), 0xffe0c896);
+    const double infinite = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(HeightRamp(5, -infinite, 9).color(7), 0xff4e8a54);
 }
 
 TEST_F(ForeignTest, badHeightMaps) {

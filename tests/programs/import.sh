@@ -61,6 +61,9 @@ sys.stdout.buffer.write(b"II*\0" + struct.pack("<IH", 8, 9) + b"".join(entry(*e)
 build heights.tif --spacing 5 --height-scale 0.1 --no-data 65535 -o heights
 same "a height map's triangles" "$(of heights triangles)" $((2 * 29 * 19 - 4))
 same "its bounds" "$(of heights bounds max)" "[145.0, 95.0, 291.8999938964844]"
+same "and no colours" "$(of heights attributes colors)" False
+build heights.tif --sea-level 1000 -o sea
+same "a sea's colours" "$(of sea attributes colors)" True
 truncate -s 500 heights.tif
 refuses heights.tif "$preprocess" build heights.tif -o none
 [ ! -e none ] || complain "a failed build left its directory"
