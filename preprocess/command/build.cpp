@@ -40,9 +40,8 @@ void printSummary(const Manifest& manifest, double seconds) {
     }
     if (split + cut > 0) {
         fmt::print(
-            "far from the rest: {} triangles split, {} cut off where they reach out of the lattice; a "
-            "coarser "
-            "--step keeps them whole\n",
+            "too long for a page: {} triangles split; {} cut off far from the middle of the model (a coarser "
+            "--step keeps more)\n",
             split, cut);
     }
 }

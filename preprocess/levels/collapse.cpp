@@ -288,6 +288,8 @@ class Collapser {
     }
 
     void contract(std::uint32_t s, std::uint32_t t, float error) {
+        const auto isGone = [this](std::uint32_t triangle) { return faces_[triangle].isGone(); };
+        fans_.tidy(s, isGone);
         mapWedges(s, t);
         map_.points[s] = t;
         mesh_.errors[t] = std::max(mesh_.errors[t], error);
@@ -299,8 +301,8 @@ class Collapser {
         // What has become a line goes.
         for (const std::uint32_t triangle : fans_.of(s)) {
             if (!has(triangle, t)) continue;
-            for (const std::uint32_t point : corners(triangle)) {
-                if (point != s) fans_.remove(point, triangle);
+            for (const std::uint32_t point : std::exchange(corners(triangle), {s, s, s})) {
+                if (point != s) fans_.remove(point, triangle, isGone);
             }
         }
         for (const std::uint32_t triangle : moved_) {

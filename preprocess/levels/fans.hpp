@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace iwalk {
@@ -18,6 +19,8 @@ struct Face {
     bool has(std::uint32_t point) const {
         return corners[0] == point || corners[1] == point || corners[2] == point;
     }
+    // Of what has become a line: all corners are one point.
+    bool isGone() const { return corners[0] == corners[1]; }
     void setNormal(const std::vector<glm::vec3>& points) {
         const glm::vec3& a = points[corners[0]];
         const glm::vec3 cross = glm::cross(points[corners[1]] - a, points[corners[2]] - a);
@@ -53,15 +56,32 @@ class Fans {
         return {pool_.data() + places_[point].first, places_[point].count};
     }
 
-    // Once; the order of the others stays.
-    void remove(std::uint32_t point, std::uint32_t triangle) {
+    // Once; the order of the others stays. From a very long fan triangles go together, when half of them are
+    // gone: isGone(triangle) must be true from now on. One by one a point with a million triangles would take
+    // time with the square of them.
+    template <class IsGone>
+    void remove(std::uint32_t point, std::uint32_t triangle, IsGone isGone) {
         Place& place = places_[point];
+        if (place.count > kLong) {
+            if (2 * ++gone_[point] >= place.count) tidy(point, isGone);
+            return;
+        }
         const auto begin = pool_.begin() + static_cast<std::ptrdiff_t>(place.first);
         const auto end = begin + static_cast<std::ptrdiff_t>(place.count);
         const auto found = std::find(begin, end, triangle);
         if (found == end) return;
         std::copy(found + 1, end, found);
         --place.count;
+    }
+
+    // What is gone from the point's fan is no longer in it.
+    template <class IsGone>
+    void tidy(std::uint32_t point, IsGone isGone) {
+        Place& place = places_[point];
+        if (place.count <= kLong || gone_.erase(point) == 0) return;
+        const auto begin = pool_.begin() + static_cast<std::ptrdiff_t>(place.first);
+        const auto end = begin + static_cast<std::ptrdiff_t>(place.count);
+        place.count = static_cast<std::uint32_t>(std::remove_if(begin, end, isGone) - begin);
     }
 
     void append(std::uint32_t point, std::span<const std::uint32_t> triangles) {
@@ -75,6 +95,7 @@ class Fans {
     void clear(std::uint32_t point) { places_[point].count = 0; }
 
   private:
+    static constexpr std::uint32_t kLong = 1024;
     struct Place {
         std::size_t first = 0;
         std::uint32_t count = 0, room = 0;
@@ -92,6 +113,7 @@ class Fans {
 
     std::vector<Place> places_;
     std::vector<std::uint32_t> pool_;
+    std::unordered_map<std::uint32_t, std::uint32_t> gone_;  // of long fans: triangles still to be removed
 };
 
 }  // namespace iwalk

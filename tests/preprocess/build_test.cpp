@@ -102,7 +102,7 @@ TEST(BuildTest, StrayVerticesDoNotCoarsenTheStep) {
 // Wide records (root cell above 2^32 steps) and wide pages.
 TEST(BuildTest, ReachesFar) {
     const TempDirectory directory;
-    FakeInput input = makeSoup(5000, 1e-4, 50, 6, true);
+    FakeInput input = makeSoup(5000, 1e-4, 10, 6, true);
     const double far = std::ldexp(1.0, 39 - 22);
     input.triangles.push_back(makeTriangle({far, -far, far}, {far + 30, -far, far}, {far, -far + 30, far}));
     input.triangles.back()[1].normal = input.triangles.back()[0].normal = {0, 0, 1};

@@ -48,7 +48,7 @@ void expectGood(const std::string& dataset) {
     const Hierarchy hierarchy = loadHierarchy(dataset, manifest).value();
     EXPECT_GT(hierarchy.rootCellLog2, kMostWholeLog2);
     EXPECT_TRUE(hierarchy.hasLevels());
-    EXPECT_LT(manifest.levels.front().triangles, manifest.triangles / 10);
+    EXPECT_LT(manifest.levels.front().triangles, manifest.triangles / 5);
 }
 
 // Together they are the triangle, as far as it lies within reach: without gaps and none twice, by their
