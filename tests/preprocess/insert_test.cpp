@@ -250,13 +250,15 @@ TEST_F(InsertTest, BytesDoNotDependOnThreadsOrMemory) {
     EXPECT_TRUE(bytes == bytesOf("little", {.memoryBytes = 64u << 20, .threads = 2}, std::move(little)));
 }
 
-TEST_F(InsertTest, RootsTooLargeForLevels) {
+TEST_F(InsertTest, RootsThatPagesCannotSpan) {
     const FakeInput a = makeSoup(5000, 1e-4, 2, 1, true);
     build(a, "d", 200);
     ASSERT_FALSE(load(path("d")).manifest.levels.empty());
     FakeInput far = placed(makeSoup(100, 0.1, 2, 2, true), 1, {1e5, 0, 0});
     insert(far, "d");
-    EXPECT_TRUE(load(path("d")).manifest.levels.empty());
+    const Loaded grown = load(path("d"));
+    EXPECT_GT(grown.hierarchy.rootCellLog2, 32u);
+    EXPECT_FALSE(grown.manifest.levels.empty());
     FakeInput more = makeSoup(1000, 1e-3, 2, 3, true);
     insert(more, "d");
     expectAsBuilt("d", together(together(a, far), more), 200);

@@ -45,7 +45,7 @@ TEST_F(RanksTest, DrawTheSamePicturesHoweverFewTheyAre) {
             pictures.push_back(each.draw(camera));
             hidden += each.stats().hiddenRanges;
         }
-        EXPECT_EQ(hidden > 0, s.mode == Mode::cplp);
+        EXPECT_EQ(hidden > 0, s.mode != Mode::frustum);
         for (const std::size_t ranks : {1, 2, 3}) {
             WallServers fewer(dataset, wall, s, 0, ranks);
             for (std::size_t i = 0; i < path.size(); ++i) {
