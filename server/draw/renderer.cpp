@@ -323,8 +323,11 @@ void GlRenderer::useShadingProgram() {
     if (variant & kShadeDepth)
         glUniform1f(kStepSize, static_cast<float>(std::ldexp(1.0, look_.stepExponent)));
     if (variant & kShadeRamp) {
-        const double low = view_.eye.to(look_.bounds.min).z, high = view_.eye.to(look_.bounds.max).z;
-        glUniform2f(kRamp, static_cast<float>(low), static_cast<float>(1 / std::max(1.0, high - low)));
+        const double low = view_.eye.to(look_.bounds.min).z;
+        // Where all is flat, floats must not colour it.
+        const glm::dvec3 sides(look_.bounds.max - look_.bounds.min);
+        const double height = std::max({1.0, sides.z, 0x1p-12 * sides.x, 0x1p-12 * sides.y});
+        glUniform2f(kRamp, static_cast<float>(low), static_cast<float>(1 / height));
     }
 }
 
