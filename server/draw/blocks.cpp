@@ -9,6 +9,20 @@ namespace {
 constexpr int kMaxWindow = 16384;  // px: GL 4.5's least largest viewport
 static_assert(kMaxWindow / 2 % kBlockEdge == 0);
 
+// What of the tile lies in squares that begin at this corner.
+std::vector<Block> squaresOf(const PixelRect& tile, int firstX, int firstY) {
+    std::vector<Block> blocks;
+    const int right = tile.x + tile.width, bottom = tile.y + tile.height;
+    for (int y = firstY; y < bottom; y += kBlockEdge)
+        for (int x = firstX; x < right; x += kBlockEdge) {
+            const int left = std::max(x, tile.x), top = std::max(y, tile.y);
+            const int width = std::min(x + kBlockEdge, right) - left,
+                      height = std::min(y + kBlockEdge, bottom) - top;
+            blocks.push_back({x, y, {left, top, width, height}});
+        }
+    return blocks;
+}
+
 }  // namespace
 
 Window windowFor(int screenWidth, int screenHeight, const Block& block) {
@@ -22,16 +36,11 @@ Window windowFor(int screenWidth, int screenHeight, const Block& block) {
 }
 
 std::vector<Block> blocksOf(const PixelRect& tile) {
-    std::vector<Block> blocks;
-    const int right = tile.x + tile.width, bottom = tile.y + tile.height;
-    for (int y = tile.y / kBlockEdge * kBlockEdge; y < bottom; y += kBlockEdge)
-        for (int x = tile.x / kBlockEdge * kBlockEdge; x < right; x += kBlockEdge) {
-            const int left = std::max(x, tile.x), top = std::max(y, tile.y);
-            const int width = std::min(x + kBlockEdge, right) - left,
-                      height = std::min(y + kBlockEdge, bottom) - top;
-            blocks.push_back({x, y, {left, top, width, height}});
-        }
-    return blocks;
+    return squaresOf(tile, tile.x / kBlockEdge * kBlockEdge, tile.y / kBlockEdge * kBlockEdge);
+}
+
+std::vector<Block> ownBlocksOf(const PixelRect& tile) {
+    return squaresOf(tile, tile.x, tile.y);
 }
 
 }  // namespace iwalk

@@ -16,6 +16,8 @@ struct Block {
     PixelRect part;    // px of the screen: what is drawn
 };
 std::vector<Block> blocksOf(const PixelRect& tile);  // px of the screen
+// The same from the tile's own corner: as few as can be, for pictures that depend on the tile anyway.
+std::vector<Block> ownBlocksOf(const PixelRect& tile);
 
 // The square of the screen that clip space spans while a block is drawn. Its edge is a power of two, so that
 // transforms are exact. Screens wider than the largest viewport have a window for each strip of half that

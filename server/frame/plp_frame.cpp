@@ -16,9 +16,9 @@ PlpFrame::PlpFrame(const Hierarchy& hierarchy, const FrustumVisibility& frustum,
       renderer_(renderer),
       pages_(pages) {}
 
-void PlpFrame::begin(const Cut& cut, const TileSight& sight, std::span<const BlockView> blocks,
-                     protocol::TileStats& stats) {
+std::vector<BlockView> PlpFrame::begin(const Cut& cut, const TileView& view, protocol::TileStats& stats) {
     Stopwatch watch;
+    const TileSight sight{view.projection, view.tile, view.eye, view.near};
     const std::vector<PlpVisibility::Candidate> candidates = plp_.candidates(cut, sight);
     const std::vector<std::uint32_t> pages = plp_.pagesOf(candidates);
     stats.visibilityMs += watch.lap();
@@ -32,8 +32,14 @@ void PlpFrame::begin(const Cut& cut, const TileSight& sight, std::span<const Blo
     };
     ranges_ = plp_.ranges(candidates, tableOf, sight);
     drawn_.assign(ranges_.size(), false);
+    std::uint64_t triangles = 0;
+    for (const PlpRange& range : ranges_) triangles += range.triangles;
+    std::vector<BlockView> blocks;
+    for (const Block& block : triangles <= budget_ ? blocksOf(view.tile) : ownBlocksOf(view.tile))
+        blocks.emplace_back(view, block);
     shareBudget(blocks);
     stats.visibilityMs += watch.lap();
+    return blocks;
 }
 
 void PlpFrame::readTables(const std::vector<std::uint32_t>& pages, protocol::TileStats& stats) {

@@ -19,10 +19,10 @@ class PlpFrame {
     PlpFrame(const Hierarchy& hierarchy, const FrustumVisibility& frustum, PageCache& cache,
              Renderer& renderer, PageDrawing& pages, const Settings& settings);
 
-    // Begins a frame of these blocks: finds what is worth drawing, and what each block may spend. Takes the
-    // pages of candidates from the cache where it does not know their tables, between two frames of its.
-    void begin(const Cut& cut, const TileSight& sight, std::span<const BlockView> blocks,
-               protocol::TileStats& stats);
+    // Begins a frame: finds what is worth drawing, and what each block may spend. Takes the pages of
+    // candidates from the cache where it does not know their tables, between two frames of its. The result is
+    // the blocks that are to be drawn: those of mode frustum when the budget suffices for all.
+    std::vector<BlockView> begin(const Cut& cut, const TileView& view, protocol::TileStats& stats);
 
     // The frame's next block, from beginning it to its pixels.
     void drawBlock(const BlockView& view, protocol::TileStats& stats);

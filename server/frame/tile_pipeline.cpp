@@ -55,8 +55,10 @@ protocol::TileStats TilePipeline::draw(const FrameState& state) {
     scene_.renderer->beginFrame(view, *pixels_);
     depths_.clear();
     std::vector<BlockView> blocks;
-    for (const Block& block : blocksOf(view.tile)) blocks.emplace_back(view, block);
-    if (plp_) plp_->begin(scene_.cut, {view.projection, view.tile, view.eye, view.near}, blocks, stats);
+    if (plp_)
+        blocks = plp_->begin(scene_.cut, view, stats);
+    else
+        for (const Block& block : blocksOf(view.tile)) blocks.emplace_back(view, block);
     std::vector<PageDrawing::Drawn> drawn;
     scene_.pages->noteInto(birdsEye_ ? &drawn : nullptr);
     for (const BlockView& block : blocks) drawBlock(block, stats);

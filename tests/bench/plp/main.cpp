@@ -92,6 +92,8 @@ std::vector<Spread> equalColors(const Bench& bench, const Options& options, int 
                                 const std::vector<Camera>& cameras) {
     const Wall wall = tools::wallOf(n * options.width, n * options.height, n, n);
     Settings settings;
+    // All tiles of a wall together have at most 2 GB.
+    settings.cacheBytes = std::min(settings.cacheBytes, (std::uint64_t{2} << 30) / wall.tiles.size());
     settings.mode = Mode::frustum;
     tools::WallServers complete(bench.dataset, wall, settings);
     settings.mode = Mode::plp;
