@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kSampleSize = 16384;
 constexpr int kBitsAcross = 24;
 constexpr int kMaxExponent = 1000;
+constexpr int kStrayDigits = 8;
 
 // The largest side of the box that leaves out the lowest and highest twentieth in each axis.
 double middleSide(const std::vector<glm::dvec3>& positions) {
@@ -83,7 +84,8 @@ int Distances::spareDigits() const {
     while (largest > 0 && counts_[largest] == 0) --largest;
     std::size_t at = largest;
     for (std::uint64_t beyond = 0; at > 0 && beyond + counts_[at] <= few;) beyond += counts_[at--];
-    return static_cast<int>(largest - at);
+    const int digits = static_cast<int>(largest - at);
+    return digits < kStrayDigits ? 0 : digits;
 }
 
 LatticePoint middleOf(const Sample& sample, int stepExponent) {

@@ -27,7 +27,7 @@ class Distances {
   public:
     void add(std::span<const glm::dvec3> positions);
     // How many binary digits more of a fraction the coordinates of nearly all vertices (19 of 20) have than
-    // the largest one has: 0 but for strays far out.
+    // the largest one has, if that is a stray, 8 digits or more beyond them; otherwise 0.
     int spareDigits() const;
 
   private:

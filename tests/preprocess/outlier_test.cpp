@@ -8,6 +8,7 @@
 #include "common/dataset/hierarchy.hpp"
 #include "common/file.hpp"
 #include "preprocess/build/split.hpp"
+#include "preprocess/build/survey.hpp"
 #include "preprocess/build/verify.hpp"
 #include "tests/common/temp_directory.hpp"
 #include "tests/preprocess/soup.hpp"
@@ -93,6 +94,22 @@ std::string bytesIn(const std::string& dataset) {
     for (const char* name : {"dataset.json", "hierarchy-1.bin", "pages-1.bin"})
         bytes += readWholeFile(dataset + "/" + name, 1u << 30).value();
     return bytes;
+}
+
+int spareDigits(int near, int far, double distance) {
+    Distances distances;
+    for (int i = 0; i < near; ++i) distances.add(std::vector{glm::dvec3(0.1, -1.5, 1)});
+    for (int i = 0; i < far; ++i) distances.add(std::vector{glm::dvec3(0, 1, -distance)});
+    return distances.spareDigits();
+}
+
+TEST(OutlierTest, AFewFarOutAreStrays) {
+    EXPECT_EQ(spareDigits(190, 10, 0x1p8), 8);
+    EXPECT_EQ(spareDigits(190, 10, 0x1.8p30), 30);
+    EXPECT_EQ(spareDigits(190, 10, 0x1.fp7), 0);  // only large
+    EXPECT_EQ(spareDigits(190, 11, 0x1p8), 0);    // too many
+    EXPECT_EQ(spareDigits(0, 3, 0x1p8), 0);
+    EXPECT_EQ(spareDigits(0, 0, 1), 0);
 }
 
 TEST(OutlierTest, TheRestIsAsWithoutIt) {
