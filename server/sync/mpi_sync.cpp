@@ -1,27 +1,29 @@
 // The one file that calls MPI, from the drawing thread alone, on a communicator of its own. A blocking MPI
 // call spins and starves the other ranks of a box with fewer cores than ranks; so everything here is
-// non-blocking and polled.
+// non-blocking and polled, but what is done once when the wall starts, and what ranks of one host do without
+// MPI.
 
 #include <mpi.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <list>
-#include <mutex>
+#include <optional>
+#include <span>
 #include <thread>
 
+#include "server/sync/host_meeting.hpp"
+#include "server/sync/start_watch.hpp"
 #include "server/sync/sync.hpp"
 
 namespace iwalk {
 namespace {
 
 constexpr int kTileTag = 1, kStopTag = 2, kVoteTag = 3, kHereTag = 4, kGoTag = 5;
-constexpr int kLongestPause = 1000, kBarrierPause = 400;  // us
+constexpr int kLongestPause = 1000, kMeetingPause = 400;  // us
 constexpr std::uint32_t kTileMagic = 0x4C545749;          // "IWTL"
 constexpr std::uint64_t kMaxTileBytes = std::uint64_t{1} << 30;
 
@@ -35,6 +37,7 @@ struct TileHeader {
 };
 static_assert(sizeof(TileHeader) == 24);
 static_assert(std::is_trivially_copyable_v<protocol::TileStats>);
+static_assert(sizeof(FrameState) <= HostMeeting::kMostBytes);
 
 // Open MPI's own error handler ends all ranks with a message; what comes back here is only ever success.
 void must(int code) {
@@ -60,56 +63,17 @@ class Patience {
     int pause_ = 20;
 };
 
-std::string hostName() {
-    char name[256] = "";
-    gethostname(name, sizeof name - 1);
-    return name;
-}
-
-// MPI comes up when all ranks have started. Until this is destroyed, and at most for so many seconds.
-class StartWatch {
-  public:
-    explicit StartWatch(int seconds) : seconds_(seconds), thread_([this] { watch(); }) {}
-    ~StartWatch() {
-        {
-            const std::lock_guard lock(mutex_);
-            up_ = true;
-        }
-        changed_.notify_all();
-        thread_.join();
-    }
-
-  private:
-    void watch() {
-        std::unique_lock lock(mutex_);
-        if (changed_.wait_for(lock, std::chrono::seconds(seconds_), [this] { return up_; })) return;
-        const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
-        const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
-        std::fprintf(
-            stderr,
-            "iwalk-server: rank %s of %s on %s is here, but not all others have started within %d s: who "
-            "does not say this is missing\n",
-            rank ? rank : "?", size ? size : "?", hostName().c_str(), seconds_);
-        std::_Exit(EXIT_FAILURE);
-    }
-
-    const int seconds_;
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    bool up_ = false;  // guarded by mutex_
-    std::thread thread_;
-};
-
 class MpiSync : public Sync {
   public:
     explicit MpiSync(int timeout) : timeout_(timeout) {
         must(MPI_Comm_dup(MPI_COMM_WORLD, &world_));
         must(MPI_Comm_rank(world_, &rank_));
         must(MPI_Comm_size(world_, &size_));
-        hosts_ = gatherText(hostName());
+        joinHost();
     }
     ~MpiSync() override {
         drain();
+        leaveHost();
         MPI_Comm_free(&world_);
         MPI_Finalize();
     }
@@ -128,9 +92,7 @@ class MpiSync : public Sync {
     bool askedToStop() override;
 
     void broadcast(FrameState& state) override {
-        MPI_Request request;
-        must(MPI_Ibcast(&state, sizeof state, MPI_BYTE, 0, world_, &request));
-        finish(request);
+        meet(std::as_writable_bytes(std::span(&state, 1)));
         CHECK_OP(state.magic, ==, FrameState::kMagic);
         CHECK_OP(state.version, ==, FrameState::kVersion);
     }
@@ -156,6 +118,9 @@ class MpiSync : public Sync {
             patience.wait();
         }
     }
+    void meet(std::span<std::byte> bytes);
+    void joinHost();
+    void leaveHost();
     bool collectVotes();
     [[noreturn]] void nameMissing(const std::vector<MPI_Request>& votes);
     void dropSent();
@@ -167,30 +132,44 @@ class MpiSync : public Sync {
     int rank_ = 0, size_ = 1;
     std::vector<std::string> hosts_;  // by rank
     std::vector<int> tiles_;          // likewise: how many it draws
+    std::vector<int> leaders_;        // of the hosts but rank 0's
+    MPI_Win hostMemory_ = MPI_WIN_NULL;
+    std::optional<HostMeeting> host_;
     std::function<void()> idleWork_;
     std::list<Outgoing> outgoing_;          // a list: MPI reads the bytes where they are
     std::vector<protocol::TileImage> own_;  // rank 0's, which need no MPI
     bool stopAsked_ = false;
 };
 
-// All tell rank 0 that they are here, then rank 0 tells all to go on. MPI_Ibarrier takes log2(size) steps one
-// after the other, and each step waits for somebody's next poll; these are two, whatever the size.
-double MpiSync::barrier() {
-    const auto start = std::chrono::steady_clock::now();
-    std::vector<MPI_Request> open(rank_ == 0 ? static_cast<std::size_t>(size_) - 1 : 2);
-    const auto finishAll = [&] { finish(open.data(), static_cast<int>(open.size()), kBarrierPause); };
+// All come, then rank 0's bytes go to all. On each host in the memory of its ranks; between hosts their
+// leaders tell rank 0 that they are here, and rank 0 tells them to go on: two steps, each of which waits for
+// somebody's next poll, where MPI_Ibarrier takes log2(hosts) of them.
+void MpiSync::meet(std::span<std::byte> bytes) {
+    if (!host_->leads()) return host_->follow(bytes, idleWork_);
+    host_->gather(idleWork_);
+    const int count = static_cast<int>(bytes.size());
+    std::vector<MPI_Request> open;
+    const auto finishAll = [&] {
+        finish(open.data(), static_cast<int>(open.size()), kMeetingPause);
+        open.clear();
+    };
     if (rank_ == 0) {
-        for (int i = 1; i < size_; ++i)
-            must(
-                MPI_Irecv(nullptr, 0, MPI_BYTE, i, kHereTag, world_, &open[static_cast<std::size_t>(i) - 1]));
+        for (const int leader : leaders_)
+            must(MPI_Irecv(nullptr, 0, MPI_BYTE, leader, kHereTag, world_, &open.emplace_back()));
         finishAll();
-        for (int i = 1; i < size_; ++i)
-            must(MPI_Isend(nullptr, 0, MPI_BYTE, i, kGoTag, world_, &open[static_cast<std::size_t>(i) - 1]));
+        for (const int leader : leaders_)
+            must(MPI_Isend(bytes.data(), count, MPI_BYTE, leader, kGoTag, world_, &open.emplace_back()));
     } else {
-        must(MPI_Isend(nullptr, 0, MPI_BYTE, 0, kHereTag, world_, &open[0]));
-        must(MPI_Irecv(nullptr, 0, MPI_BYTE, 0, kGoTag, world_, &open[1]));
+        must(MPI_Isend(nullptr, 0, MPI_BYTE, 0, kHereTag, world_, &open.emplace_back()));
+        must(MPI_Irecv(bytes.data(), count, MPI_BYTE, 0, kGoTag, world_, &open.emplace_back()));
     }
     finishAll();
+    host_->release(bytes);
+}
+
+double MpiSync::barrier() {
+    const auto start = std::chrono::steady_clock::now();
+    meet({});
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -256,11 +235,43 @@ void MpiSync::renumber(int rank, std::vector<int> tiles) {
     tiles_ = std::move(tiles);
     MPI_Comm renumbered = MPI_COMM_NULL;
     must(MPI_Comm_split(world_, 0, rank, &renumbered));
+    leaveHost();
     must(MPI_Comm_free(&world_));
     world_ = renumbered;
     must(MPI_Comm_rank(world_, &rank_));
     CHECK_OP(rank_, ==, rank);
+    joinHost();
+}
+
+// The rank with the lowest number leads: rank 0 its own host.
+void MpiSync::joinHost() {
     hosts_ = gatherText(hostName());
+    MPI_Comm host = MPI_COMM_NULL;
+    int rank = 0, ranks = 0, unit = 0;
+    must(MPI_Comm_split_type(world_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host));
+    must(MPI_Comm_rank(host, &rank));
+    must(MPI_Comm_size(host, &ranks));
+    auto size = static_cast<MPI_Aint>(rank == 0 ? HostMeeting::bytesFor(ranks) : 0);
+    void* memory = nullptr;
+    must(MPI_Win_allocate_shared(size, 1, MPI_INFO_NULL, host, &memory, &hostMemory_));
+    must(MPI_Win_shared_query(hostMemory_, 0, &size, &unit, &memory));
+    if (rank == 0) HostMeeting::prepare(memory, ranks);
+    must(MPI_Comm_free(&host));
+    host_.emplace(memory, rank, ranks);
+
+    std::vector<int> leads(static_cast<std::size_t>(size_));
+    const int mine = host_->leads();
+    MPI_Request request;  // what is prepared is used after this
+    must(MPI_Iallgather(&mine, 1, MPI_INT, leads.data(), 1, MPI_INT, world_, &request));
+    finish(request);
+    leaders_.clear();
+    for (int i = 1; i < size_; ++i)
+        if (leads[static_cast<std::size_t>(i)]) leaders_.push_back(i);
+}
+
+void MpiSync::leaveHost() {
+    host_.reset();
+    must(MPI_Win_free(&hostMemory_));
 }
 
 std::vector<protocol::TileStats> MpiSync::gather(const std::vector<protocol::TileStats>& mine) {

@@ -14,8 +14,9 @@
 namespace iwalk {
 
 // Keeps the ranks of a wall together. Collective calls are made by all ranks in the same order. Nothing in
-// here spins: every wait is polled with sleeps that grow from 20 us to 1 ms (0.4 ms at the barrier), and what
-// setIdleWork() gave is done between them.
+// here spins. In broadcast() and barrier() ranks of one host sleep until they are woken; every other wait is
+// polled with sleeps that grow from 20 us to 1 ms (0.4 ms between hosts in those two). What setIdleWork()
+// gave is done meanwhile.
 class Sync {
   public:
     static constexpr std::size_t kMaxText = 1023;
@@ -42,7 +43,7 @@ class Sync {
     virtual void askToStop() = 0;
     virtual bool askedToStop() = 0;
 
-    // Gives rank 0's frame state to all.
+    // Gives rank 0's frame state to all when all have come.
     virtual void broadcast(FrameState& state) = 0;
     // Returns when all ranks have come here; the result is how long this one waited, in ms.
     virtual double barrier() = 0;
