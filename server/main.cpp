@@ -267,6 +267,7 @@ int main(int argc, char** argv) {
     if (options.tilesOnly) return printTiles(options);
     std::signal(SIGTERM, requestStop);
     std::signal(SIGINT, requestStop);
+    std::signal(SIGUSR1, requestStop);  // mpirun passes it on, and does not kill soon after
     std::signal(SIGPIPE, SIG_IGN);
     Result<std::unique_ptr<Sync>> sync = startMpi(argc, argv, options.startTimeout);
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // no rank outlives its launcher

@@ -46,6 +46,49 @@ grep -q 'tiles by rank: tile-0-0 on [^ ,]*, tile-0-1 on [^ ,]*, tile-1-0 on [^ ,
 grep -q 'tiles by rank: tile-0-0 on [^ ]* (rank 0), tile-0-1 on [^ ]* (rank 1), tile-1-0, tile-1-1 on [^ ]* (rank 2)$' 3.log ||
     complain "three ranks say: $(cat 3.log)"
 
+# Previews come from all tiles of a rank, and a wall that was started again shows the same as before.
+cat >previews.py <<'PYTHON'
+# The wall's small pictures, by tile: all four of one picture.
+import socket, struct, sys
+connection = socket.create_connection(("127.0.0.1", int(sys.argv[1])), timeout=30)
+hello = struct.pack("<IBBH", 4, 0, 1, 0)  # watches, and wants previews
+connection.sendall(struct.pack("<IHH", len(hello), 1, 0) + hello)
+stream, pictures = connection.makefile("rb"), {}
+while True:
+    length, kind, _ = struct.unpack("<IHH", stream.read(8))
+    body = stream.read(length)
+    if kind != 6: continue
+    number, tile, what = struct.unpack_from("<QIB", body)
+    assert what == 2 and tile < 4, (what, tile)
+    tiles = pictures.setdefault(number, {})
+    tiles[tile] = body[13:]
+    if len(tiles) == 4: break
+for tile, picture in sorted(tiles.items()): print(tile, picture.hex())
+PYTHON
+"$source/scripts/wall" "$work/dataset" --wall wall.toml --ranks 2 --bin "$bin" --supervise >log 2>errors &
+supervisor=$!
+cleanup() { kill "$supervisor" 2>/dev/null && wait "$supervisor" || true; }
+# eventually TEXT TIMES FILE: it says so, so many times.
+eventually() {
+    for _ in $(seq 300); do
+        [ "$(grep -c "$1" "$3")" -lt "$2" ] || return 0
+        sleep 0.1
+    done
+    complain "no '$1' for $2 times: $(cat log errors)"
+    finish
+}
+eventually 'connect with' 1 log
+port=$(sed -n 's/.*listening on .*://p' log | head -1)
+"$bin/iwalk-client" --connect "127.0.0.1:$port" --path path.json >/dev/null || complain "a wall of two ranks does not fly"
+python3 previews.py "$port" >previews || complain "two ranks of two tiles: no previews"
+[ "$(cut -d ' ' -f 2 previews | sort -u | wc -l)" -ge 2 ] || complain "previews are all alike"
+sleep 1  # the camera rests, and rank 0 keeps it
+kill -KILL "$(pgrep -f "iwalk-server .*$work/dataset" | tail -1)"
+eventually 'listening on' 2 log
+python3 previews.py "$port" >again || complain "started again: no previews"
+cmp -s previews again || complain "started again it shows another picture"
+cleanup
+
 # One limit for the process: looking around, each of 4 tiles sees most of 13 MB of pages. Room for 12 MB more makes the
 # process 12 MB larger, not four times as much.
 "$bin/iwalk-preprocess" generate sphere --triangles 1000000 -o sphere.ply >/dev/null 2>&1
