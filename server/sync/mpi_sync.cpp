@@ -23,7 +23,7 @@ namespace iwalk {
 namespace {
 
 constexpr int kTileTag = 1, kStopTag = 2, kVoteTag = 3, kHereTag = 4, kGoTag = 5;
-constexpr int kLongestPause = 1000, kMeetingPause = 400;  // us
+constexpr int kLongestPause = 1000, kMeetingPause = 200;  // us
 constexpr std::uint32_t kTileMagic = 0x4C545749;          // "IWTL"
 constexpr std::uint64_t kMaxTileBytes = std::uint64_t{1} << 30;
 
@@ -385,6 +385,8 @@ void MpiSync::drain() {
 
 Result<std::unique_ptr<Sync>> startMpi(int& argc, char**& argv, int timeout) {
     const StartWatch watch(timeout);
+    // MPI asks hwloc for the machine, and that an X server, whose end in that moment would be this rank's.
+    setenv("HWLOC_COMPONENTS", "-gl", 0);
     int provided = MPI_THREAD_SINGLE;
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS ||
         provided < MPI_THREAD_FUNNELED)

@@ -31,6 +31,7 @@ eventually() {
     finish
 }
 start_servers() {
+    : >log
     setsid "${launch[@]}" 2 "$bin/iwalk-server" --dataset "$work/dataset" --wall wall.toml --listen "127.0.0.1:$1" \
         </dev/null >log 2>errors &
     server=$!

@@ -7,7 +7,7 @@ trap 'exit 143' TERM INT
 cleanup() { :; }
 failures=0
 
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_btl_vader_single_copy_mechanism=none
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_btl_vader_single_copy_mechanism=none HWLOC_COMPONENTS=-gl
 export LP_NUM_THREADS=0
 
 complain() {

@@ -41,6 +41,7 @@ nothing_runs
 
 # A wall of its own for the clients below.
 start_wall() {
+    : >"$work/log"  # what the last wall said there
     "${launch[@]}" 4 "$bin/iwalk-server" --dataset "$work/$1" --wall wall.toml --listen 127.0.0.1:0 \
         </dev/null >"$work/log" 2>"$work/errors" &
     wall=$!
@@ -84,6 +85,7 @@ exec 8>&- 9>&-
 stop_wall
 
 # A server that dies takes the wall with it; --supervise brings it back at the same address, with the same picture.
+: >"$work/log"
 "$source/scripts/wall" "$work/dataset" --wall wall.toml --bin "$bin" --supervise -- --present file --out "$work/shown" \
     >"$work/log" 2>"$work/errors" &
 wall=$!
