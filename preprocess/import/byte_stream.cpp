@@ -5,8 +5,8 @@
 
 namespace iwalk {
 namespace {
-// Small enough to stay in a core's cache between the read and the parser.
-constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
+// Who goes elsewhere may want little there, and go on soon.
+constexpr std::size_t kSeekBytes = std::size_t{4} << 10;
 }  // namespace
 
 void ByteStream::seek(std::uint64_t offset) {
@@ -17,6 +17,7 @@ void ByteStream::seek(std::uint64_t offset) {
     }
     begin_ = size_ = 0;
     loaded_ = offset;
+    ahead_ = kSeekBytes;
     buffer_[0] = '\n';
 }
 
@@ -25,7 +26,8 @@ Result<void> ByteStream::refill(std::size_t want) {
     std::memmove(buffer_.data(), buffer_.data() + begin_, kept);
     begin_ = 0, size_ = kept;
 
-    const std::size_t room = std::max(want, kBufferBytes);
+    const std::size_t room = std::max(want, ahead_);
+    ahead_ = std::min(2 * ahead_, kBufferBytes);
     if (buffer_.size() < room + 1) buffer_.resize(room + 1);
     const std::uint64_t left = loaded_ < file_.size() ? file_.size() - loaded_ : 0;
     const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(room - kept, left));

@@ -2,7 +2,10 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <cstring>
 
+#include "common/file.hpp"
+#include "preprocess/import/vrml_importer.hpp"
 #include "tests/import/import_fixture.hpp"
 
 namespace iwalk {
@@ -104,6 +107,38 @@ TEST_F(VrmlTest, nodesAreUsedAgain) {
     EXPECT_THAT(firstCorners("Switch { choice DEF A " + shape(kSet) +
                              " } DEF A Transform { translation 2 0 0 children " + shape(kSet) + " } USE A"),
                 ElementsAre("2 0 0", "2 0 0"));
+}
+
+class CountingFile : public RandomAccessFile {
+  public:
+    CountingFile(std::string text, std::uint64_t& bytesRead)
+        : text_(std::move(text)), bytesRead_(bytesRead) {}
+    Result<void> readAt(std::uint64_t offset, std::span<std::byte> out) const override {
+        std::memcpy(out.data(), text_.data() + offset, out.size());
+        bytesRead_ += out.size();
+        return {};
+    }
+    std::uint64_t size() const override { return text_.size(); }
+
+  private:
+    std::string text_;
+    std::uint64_t& bytesRead_;
+};
+
+// What is used stands far away, and little is read there.
+TEST_F(VrmlTest, usingNodesReadsLittle) {
+    constexpr std::uint64_t kUses = 3000, kBytesAUse = 16384;
+    std::string text = kHead + shape(kSet, "DEF A " + material("1 0 0"));
+    for (std::uint64_t use = 0; use < kUses; ++use) text += shape(kSet, "USE A");
+    ASSERT_GT(text.size(), 300'000u);
+    std::uint64_t bytesRead = 0;
+    const auto importer =
+        openVrml("a.wrl", std::make_unique<CountingFile>(text, bytesRead), {16u << 20, directory_.path("")});
+    ASSERT_TRUE(importer.ok());
+    const auto summary = (*importer)->scan({}, {});
+    ASSERT_TRUE(summary.ok()) << summary.error().message;
+    EXPECT_EQ(summary->triangleBound, kUses + 1);
+    EXPECT_LE(bytesRead, text.size() + kUses * kBytesAUse);
 }
 
 TEST_F(VrmlTest, choices) {

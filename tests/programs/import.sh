@@ -64,6 +64,18 @@ same "its bounds" "$(of heights bounds max)" "[145.0, 95.0, 291.8999938964844]"
 same "and no colours" "$(of heights attributes colors)" False
 build heights.tif --sea-level 1000 -o sea
 same "a sea's colours" "$(of sea attributes colors)" True
+# With a round hole, of integers and of floats.
+wanted=$(python3 -c '
+import math
+there = lambda x, y: math.hypot(x - 30, y - 20) >= 5
+corners = lambda x, y: there(x, y) + there(x + 1, y) + there(x, y + 1) + there(x + 1, y + 1)
+print(sum(max(corners(x, y) - 2, 0) for y in range(39) for x in range(59)))')
+for options in "hole.tif" "hole.png" "hole.exr --float"; do
+    # shellcheck disable=SC2086
+    "$bin/iwalk-height-map" 60 40 $options --holes || complain "iwalk-height-map $options"
+    build "${options% *}" --no-data 65535 -o hole
+    same "triangles of $options" "$(of hole triangles)" "$wanted"
+done
 truncate -s 500 heights.tif
 refuses heights.tif "$preprocess" build heights.tif -o none
 [ ! -e none ] || complain "a failed build left its directory"

@@ -36,7 +36,9 @@ double unitsOf(OIIO::TypeDesc type) {
 Result<void> exportHeights(const std::string& path, ExchangeWriter& out) {
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", 1);
-    const auto image = OIIO::ImageInput::open(path);
+    OIIO::ImageSpec asked;
+    asked.attribute("oiio:UnassociatedAlpha", 1);  // samples as they are, however opaque
+    const auto image = OIIO::ImageInput::open(path, &asked);
     if (!image) return fail("cannot be read as an image of heights");
     const OIIO::ImageSpec spec = image->spec();
     if (spec.width < 2 || spec.height < 2 || spec.depth > 1 || spec.nchannels < 1 ||
