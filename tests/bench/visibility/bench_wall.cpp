@@ -39,11 +39,12 @@ void draw(const std::string& name, tools::WallServers& servers, const Camera& ca
 
 }  // namespace
 
-BenchWall::BenchWall(const Dataset& dataset, int width, int height, int n, double costOfLooking)
+BenchWall::BenchWall(const Dataset& dataset, int width, int height, int n, double costOfLooking,
+                     unsigned threads)
     : wall_(tools::wallOf(n * width, n * height, n, n)),
       frustum_(dataset, wall_, inMode(Mode::frustum, n * n)),
-      cplp_(dataset, wall_, inMode(Mode::cplp, n * n), costOfLooking),
-      plp_(dataset, wall_, inMode(Mode::plp, n * n)) {}
+      cplp_(dataset, wall_, inMode(Mode::cplp, n * n), costOfLooking, 0, threads),
+      plp_(dataset, wall_, inMode(Mode::plp, n * n), costOfLooking, 0, threads) {}
 
 void BenchWall::drawFrame(const Camera& camera, Series& series) {
     draw("frustum", frustum_, camera, series);

@@ -13,7 +13,8 @@ using Series = std::map<std::string, std::vector<double>>;
 class BenchWall {
   public:
     // The dataset outlives it. `width`, `height`: px of a tile. `costOfLooking`: of ConservativeDrawing.
-    BenchWall(const Dataset& dataset, int width, int height, int n, double costOfLooking);
+    // `threads`: of visibility.
+    BenchWall(const Dataset& dataset, int width, int height, int n, double costOfLooking, unsigned threads);
 
     // All modes draw the frame, one after the other. Appends sums over the tiles: MODE.ms (elapsed),
     // MODE.cpu_ms (of all threads), MODE.triangles, and of cplp the parts.
