@@ -76,7 +76,9 @@ bool DepthPyramid::hides(const ScreenBox& box, int index) const {
     for (int y = box.top >> index; y <= (box.bottom - 1) >> index; ++y)
         for (int x = box.left >> index; x <= (box.right - 1) >> index; ++x) {
             if (level.farthest[static_cast<std::size_t>(y * level.width + x)] > box.depth) continue;
-            if (index == 0) return false;
+            const bool inside = x * size >= box.left && (x + 1) * size <= box.right && y * size >= box.top &&
+                                (y + 1) * size <= box.bottom;
+            if (inside) return false;  // the square's farthest pixel is one of the box
             const ScreenBox part{std::max(box.left, x * size), std::max(box.top, y * size),
                                  std::min(box.right, (x + 1) * size), std::min(box.bottom, (y + 1) * size),
                                  box.depth};
