@@ -154,9 +154,10 @@ RayGrid::Cells RayGrid::cellsOf(const EyeBox& box) const {
         low[axis] = least(greatest(place[0], 0), ends[axis]);
         high[axis] = least(greatest(farthest[0], 0), ends[axis]);
     }
-    const auto firstCell = [](float from, int count) { return std::min(static_cast<int>(from), count - 1); };
-    const auto endOf = [](float to) { return std::max(1, static_cast<int>(std::ceil(to))); };
-    return {firstCell(low[0], columns_), endOf(high[0]), firstCell(low[1], rows_), endOf(high[1]),
+    const int left = std::min(static_cast<int>(low[0]), columns_ - 1),
+              top = std::min(static_cast<int>(low[1]), rows_ - 1);
+    return {left, std::max(left + 1, static_cast<int>(std::ceil(high[0]))), top,
+            std::max(top + 1, static_cast<int>(std::ceil(high[1]))),
             greatest(high[0] - low[0], kLeastSide) * greatest(high[1] - low[1], kLeastSide)};
 }
 

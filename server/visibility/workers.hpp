@@ -9,11 +9,11 @@
 
 namespace iwalk {
 
-// A few threads for work that falls into pieces (docs/threading.md). Whoever calls run() works, too, so one
-// thread is none more.
+// A few threads for work that falls into pieces (docs/threading.md). Whoever calls run() works, too: for one
+// thread none is started.
 class Workers {
   public:
-    // More do not pay: what is shared takes some milliseconds.
+    // What is shared takes some milliseconds only.
     static constexpr unsigned kMost = 4;
 
     // `threads`: with the caller's.

@@ -94,20 +94,23 @@ std::vector<Spread> equalColors(const Bench& bench, const Options& options, int 
                                 const std::vector<Camera>& cameras) {
     const Wall wall = tools::wallOf(n * options.width, n * options.height, n, n);
     Settings settings;
-    // All tiles of a wall together have at most 2 GB.
-    settings.cacheBytes = std::min(settings.cacheBytes, (std::uint64_t{2} << 30) / wall.tiles.size());
+    // One rank has all tiles of a wall, so that pages are in memory once for each budget.
+    const auto servers = [&] {
+        return std::make_unique<tools::WallServers>(bench.dataset, wall, settings,
+                                                    ConservativeDrawing::kCostOfLooking, 1, options.threads);
+    };
     settings.mode = Mode::frustum;
-    tools::WallServers complete(bench.dataset, wall, settings);
+    const std::unique_ptr<tools::WallServers> complete = servers();
     settings.mode = Mode::plp;
     settings.plpRays = options.rays;
     std::vector<std::unique_ptr<tools::WallServers>> walls;
     for (const std::uint64_t budget : options.budgets) {
         settings.plpBudget = budget;
-        walls.push_back(std::make_unique<tools::WallServers>(bench.dataset, wall, settings));
+        walls.push_back(servers());
     }
     std::vector<std::vector<double>> shares(walls.size());
     for (const Camera& camera : cameras) {
-        const tools::Picture picture = complete.draw(camera);
+        const tools::Picture picture = complete->draw(camera);
         for (std::size_t i = 0; i < walls.size(); ++i) {
             const tools::Comparison c = compare(picture, walls[i]->draw(camera), std::nullopt);
             shares[i].push_back(100 - 100.0 * static_cast<double>(c.color.different) /
