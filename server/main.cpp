@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <set>
+#include <thread>
 
 #include "common/token.hpp"
 #include "common/version.hpp"
@@ -129,10 +130,21 @@ struct Rank {
     std::unique_ptr<Gateway> gateway;
 };
 
-// Of the ranks on this host; Open MPI says so.
+// What Open MPI says; 0 without it.
+unsigned long fromMpi(const char* name) {
+    const char* number = std::getenv(name);
+    return number ? std::strtoul(number, nullptr, 10) : 0;
+}
+
+// Of the ranks on this host.
 std::size_t localRank() {
-    const char* rank = std::getenv("OMPI_COMM_WORLD_LOCAL_RANK");
-    return rank ? static_cast<std::size_t>(std::strtoul(rank, nullptr, 10)) : 0;
+    return fromMpi("OMPI_COMM_WORLD_LOCAL_RANK");
+}
+
+// This rank's part of the cores.
+unsigned visibilityThreads() {
+    const auto ranks = static_cast<unsigned>(std::max(1ul, fromMpi("OMPI_COMM_WORLD_LOCAL_SIZE")));
+    return std::clamp(std::thread::hardware_concurrency() / ranks, 1u, Workers::kMost);
 }
 
 // The GL that draws the tiles, and the way to whoever looks at them.
@@ -163,7 +175,8 @@ Result<void> prepare(Rank& rank, const ServerOptions& options, const Dataset& da
                      const Sync& sync) {
     const std::vector<std::size_t>& mine = shares[static_cast<std::size_t>(sync.rank())];
     RETURN_IF_ERROR(prepareOutputs(rank, options, mine));
-    ASSIGN_OR_RETURN(rank.tiles, RankTiles::create(dataset, options.wall, mine, options.settings));
+    ASSIGN_OR_RETURN(rank.tiles, RankTiles::create(dataset, options.wall, mine, options.settings,
+                                                   ConservativeDrawing::kCostOfLooking, visibilityThreads()));
     if (sync.rank() != 0) return {};
     std::string token;
     if (!options.tokenFile.empty()) {

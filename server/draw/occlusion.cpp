@@ -10,18 +10,22 @@ namespace {
 
 class DepthOcclusion : public Occlusion {
   public:
-    explicit DepthOcclusion(Renderer& renderer) : renderer_(renderer) {}
+    DepthOcclusion(Renderer& renderer, Workers& workers) : renderer_(renderer), workers_(workers) {}
     void update() override {
         const glm::ivec2 size = renderer_.readBlockDepths(depths_);
-        pyramid_.build(depths_, size.x, size.y);
+        pyramid_.build(depths_, size.x, size.y, workers_);
     }
     void hidden(std::span<const ScreenBox> boxes, std::vector<std::uint8_t>& hidden) override {
         hidden.resize(boxes.size());
-        for (std::size_t i = 0; i < boxes.size(); ++i) hidden[i] = pyramid_.hides(boxes[i]);
+        workers_.runParts(boxes.size(), kTogether, [&](std::size_t first, std::size_t end) {
+            for (std::size_t i = first; i < end; ++i) hidden[i] = pyramid_.hides(boxes[i]);
+        });
     }
 
   private:
+    static constexpr std::size_t kTogether = 256;  // boxes that a thread tests at a time
     Renderer& renderer_;
+    Workers& workers_;
     std::vector<float> depths_;
     DepthPyramid pyramid_;
 };
@@ -89,8 +93,8 @@ void QueryOcclusion::ask(const ScreenBox& box, GLuint query, const glm::ivec2& s
 
 }  // namespace
 
-std::unique_ptr<Occlusion> makeDepthOcclusion(Renderer& renderer) {
-    return std::make_unique<DepthOcclusion>(renderer);
+std::unique_ptr<Occlusion> makeDepthOcclusion(Renderer& renderer, Workers& workers) {
+    return std::make_unique<DepthOcclusion>(renderer, workers);
 }
 
 Result<std::unique_ptr<Occlusion>> makeQueryOcclusion(Renderer& renderer) {
@@ -98,9 +102,9 @@ Result<std::unique_ptr<Occlusion>> makeQueryOcclusion(Renderer& renderer) {
     return std::unique_ptr<Occlusion>(std::make_unique<QueryOcclusion>(renderer, program));
 }
 
-Result<std::unique_ptr<Occlusion>> makeOcclusion(OcclusionTest test, Renderer& renderer) {
+Result<std::unique_ptr<Occlusion>> makeOcclusion(OcclusionTest test, Renderer& renderer, Workers& workers) {
     if (test == OcclusionTest::queries) return makeQueryOcclusion(renderer);
-    return makeDepthOcclusion(renderer);
+    return makeDepthOcclusion(renderer, workers);
 }
 
 }  // namespace iwalk

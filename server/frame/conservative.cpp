@@ -203,26 +203,35 @@ void ConservativeDrawing::drawOpen(std::vector<PageDrawing::Page>& open, protoco
 
 // The ranges that own a pixel are the next frame's guess.
 void ConservativeDrawing::remember() {
-    memory_->guess.clear();
-    renderer_.readBlockTriangles(pixels_);
-    std::uint32_t last = 0;
-    std::vector<bool> owns(drawn_.size());
-    for (const std::uint32_t pixel : pixels_) {
-        if (pixel == last || pixel == 0) continue;
-        last = pixel;
-        const std::size_t number = (pixel >> 16) - 1;
-        const std::size_t first = draws_[number].firstRange;
+    // A pixel's number is that of the draw and of the triangle in its page: those of a range stand together,
+    // in the order of drawing.
+    firstNumbers_.clear();
+    std::vector<PageRange> ranges;
+    for (std::size_t number = 0; number < draws_.size(); ++number) {
+        const Draw& draw = draws_[number];
         const std::size_t end = number + 1 < draws_.size() ? draws_[number + 1].firstRange : drawn_.size();
-        const std::uint32_t index = 3 * (pixel & 0xffff);
-        const auto behind =
-            std::upper_bound(drawn_.begin() + static_cast<std::ptrdiff_t>(first),
-                             drawn_.begin() + static_cast<std::ptrdiff_t>(end), index,
-                             [](std::uint32_t i, const DrawnRange& range) { return i < range.firstIndex; });
-        const auto range = static_cast<std::size_t>(behind - drawn_.begin()) - 1;
-        if (owns[range]) continue;
-        owns[range] = true;
-        memory_->guess.emplace_back(draws_[number].page, drawn_[range].range);
+        for (std::size_t i = draw.firstRange; i < end; ++i) {
+            ranges.emplace_back(draw.page, drawn_[i].range);
+            firstNumbers_.push_back(static_cast<std::uint32_t>((number + 1) << 16) |
+                                    drawn_[i].firstIndex / 3);
+        }
     }
+    const std::size_t count = ranges.size();
+    firstNumbers_.push_back(0xffffffff);  // behind the last one
+
+    renderer_.readBlockTriangles(pixels_);
+    std::vector<bool> owns(count);
+    std::uint32_t first = 0, size = 1;  // of the range of the last pixel; at first nobody's
+    for (const std::uint32_t pixel : pixels_) {
+        if (pixel - first < size || pixel == 0) continue;
+        const auto next = std::upper_bound(firstNumbers_.begin(), firstNumbers_.end(), pixel);
+        owns[static_cast<std::size_t>(next - firstNumbers_.begin()) - 1] = true;
+        first = *(next - 1);
+        size = *next - first;
+    }
+    memory_->guess.clear();
+    for (std::size_t i = 0; i < count; ++i)
+        if (owns[i]) memory_->guess.push_back(ranges[i]);
     std::sort(memory_->guess.begin(), memory_->guess.end());
 }
 

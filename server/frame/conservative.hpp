@@ -76,10 +76,11 @@ class ConservativeDrawing {
     std::vector<Draw> draws_;
     std::vector<DrawnRange> drawn_;
     std::uint64_t hiddenTriangles_ = 0;
-    bool rest_ = false;                  // the guess is drawn, and something else, too
-    std::vector<ScreenBox> boxes_;       // scratch
-    std::vector<std::uint8_t> hidden_;   // scratch
-    std::vector<std::uint32_t> pixels_;  // scratch
+    bool rest_ = false;  // the guess is drawn, and something else, too
+    // Scratch.
+    std::vector<ScreenBox> boxes_;
+    std::vector<std::uint8_t> hidden_;
+    std::vector<std::uint32_t> pixels_, firstNumbers_;
 };
 
 }  // namespace iwalk

@@ -6,15 +6,21 @@
 #include "server/frame/tile_counters.hpp"
 
 namespace iwalk {
+namespace {
+
+constexpr std::size_t kTogether = 256;  // ranges that a thread projects at a time
+
+}  // namespace
 
 PlpFrame::PlpFrame(const Hierarchy& hierarchy, const FrustumVisibility& frustum, PageCache& cache,
-                   Renderer& renderer, PageDrawing& pages, const Settings& settings)
+                   Renderer& renderer, PageDrawing& pages, Workers& workers, const Settings& settings)
     : budget_(settings.plpBudget),
-      plp_(hierarchy, settings.plpBudget, settings.plpRays / 100),
+      plp_(hierarchy, settings.plpBudget, settings.plpRays / 100, workers),
       frustum_(frustum),
       cache_(cache),
       renderer_(renderer),
-      pages_(pages) {}
+      pages_(pages),
+      workers_(workers) {}
 
 std::vector<BlockView> PlpFrame::begin(const Cut& cut, const TileView& view, protocol::TileStats& stats) {
     Stopwatch watch;
@@ -97,9 +103,9 @@ void PlpFrame::drawBlock(const BlockView& view, protocol::TileStats& stats) {
         renderer_.wait();
         watch.lap();
         const glm::ivec2 size = renderer_.readBlockDepths(depths_);
-        pyramid_.build(depths_, size.x, size.y);
+        pyramid_.build(depths_, size.x, size.y, workers_);
         stats.pyramidMs += watch.lap();
-        stats.hiddenRanges += spending.look(pyramid_);
+        stats.hiddenRanges += spending.look(pyramid_, workers_);
         next = take(spending, view.eye);
         stats.testMs += watch.lap();
         cache_.continueFrame(pagesOf(next));
@@ -110,12 +116,15 @@ void PlpFrame::drawBlock(const BlockView& view, protocol::TileStats& stats) {
 }
 
 std::vector<PlpSpending::Range> PlpFrame::rangesIn(const BlockView& view) const {
-    std::vector<PlpSpending::Range> ranges;
-    for (std::uint32_t i = 0; i < ranges_.size(); ++i) {
-        const PlpRange& range = ranges_[i];
-        const ScreenBox box = view.boxes.of(glm::dvec3(range.box.low), glm::dvec3(range.box.high));
-        if (!box.empty()) ranges.push_back({i, drawn_[i] ? 0 : range.triangles, box});
-    }
+    std::vector<PlpSpending::Range> ranges(ranges_.size());
+    workers_.runParts(ranges_.size(), kTogether, [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+            const PlpRange& range = ranges_[i];
+            const ScreenBox box = view.boxes.of(glm::dvec3(range.box.low), glm::dvec3(range.box.high));
+            ranges[i] = {static_cast<std::uint32_t>(i), drawn_[i] ? 0 : range.triangles, box};
+        }
+    });
+    std::erase_if(ranges, [](const PlpSpending::Range& range) { return range.box.empty(); });
     return ranges;
 }
 

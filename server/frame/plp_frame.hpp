@@ -17,7 +17,7 @@ class PlpFrame {
   public:
     // All outlive it.
     PlpFrame(const Hierarchy& hierarchy, const FrustumVisibility& frustum, PageCache& cache,
-             Renderer& renderer, PageDrawing& pages, const Settings& settings);
+             Renderer& renderer, PageDrawing& pages, Workers& workers, const Settings& settings);
 
     // Begins a frame: finds what is worth drawing, and what each block may spend. Takes the pages of
     // candidates from the cache where it does not know their tables, between two frames of its. The result is
@@ -39,6 +39,7 @@ class PlpFrame {
     PageCache& cache_;
     Renderer& renderer_;
     PageDrawing& pages_;
+    Workers& workers_;
 
     std::unordered_map<std::uint32_t, PageTable> tables_;  // by page
     // Of the frame: its ranges by priority, which of them are drawn somewhere, what blocks may spend.

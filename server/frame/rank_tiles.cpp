@@ -4,11 +4,12 @@ namespace iwalk {
 
 Result<std::unique_ptr<RankTiles>> RankTiles::create(const Dataset& dataset, const Wall& wall,
                                                      const std::vector<std::size_t>& tiles,
-                                                     const Settings& settings, double costOfLooking) {
+                                                     const Settings& settings, double costOfLooking,
+                                                     unsigned threads) {
     std::vector<PixelRect> rects;
     for (const std::size_t tile : tiles) rects.push_back(wall.tiles[tile].onScreen);
     auto rank = std::make_unique<RankTiles>();
-    ASSIGN_OR_RETURN(rank->scene_, Scene::create(dataset, rects, settings));
+    ASSIGN_OR_RETURN(rank->scene_, Scene::create(dataset, rects, settings, threads));
     for (const std::size_t tile : tiles) {
         ASSIGN_OR_RETURN(std::unique_ptr<TilePipeline> pipeline,
                          TilePipeline::create(*rank->scene_, wall, tile, settings, costOfLooking));

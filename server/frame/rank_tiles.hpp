@@ -10,10 +10,11 @@ namespace iwalk {
 // The tiles that a rank draws, of one scene: what one has read, the others find.
 class RankTiles {
   public:
-    // `tiles`: of the wall, at least one. `costOfLooking`: of ConservativeDrawing.
+    // `tiles`: of the wall, at least one. `costOfLooking`: of ConservativeDrawing. `threads`: of Scene.
     static Result<std::unique_ptr<RankTiles>> create(
         const Dataset& dataset, const Wall& wall, const std::vector<std::size_t>& tiles,
-        const Settings& settings, double costOfLooking = ConservativeDrawing::kCostOfLooking);
+        const Settings& settings, double costOfLooking = ConservativeDrawing::kCostOfLooking,
+        unsigned threads = 1);
 
     // The next frame is drawn with these; what is not live stays as it was.
     Result<void> apply(const Settings& settings);

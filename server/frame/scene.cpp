@@ -48,9 +48,9 @@ Result<Dataset> openDataset(const std::string& path) {
 }
 
 Result<std::unique_ptr<Scene>> Scene::create(const Dataset& dataset, std::span<const PixelRect> tiles,
-                                             const Settings& settings) {
+                                             const Settings& settings, unsigned threads) {
     RETURN_IF_ERROR(checkSettings(settings));
-    auto scene = std::make_unique<Scene>(dataset);
+    auto scene = std::make_unique<Scene>(dataset, threads);
     ASSIGN_OR_RETURN(scene->renderer, Renderer::create(tiles, lookOf(dataset, settings)));
     ASSIGN_OR_RETURN(const std::uint64_t bytes, arenaBytes(dataset.hierarchy, settings.cacheBytes));
     ASSIGN_OR_RETURN(std::vector<std::span<std::byte>> memory, scene->renderer->lendArena(bytes));
@@ -68,7 +68,7 @@ Result<void> Scene::apply(const Settings& settings) {
     cut = cutAtLevel(dataset.hierarchy, settings.level);
     occlusion.reset();
     if (settings.mode != Mode::cplp) return {};
-    ASSIGN_OR_RETURN(occlusion, makeOcclusion(settings.occlusion, *renderer));
+    ASSIGN_OR_RETURN(occlusion, makeOcclusion(settings.occlusion, *renderer, workers));
     return {};
 }
 

@@ -25,17 +25,20 @@ Result<Dataset> openDataset(const std::string& path);
 // one limit and with one set of fetch threads, and what draws. Tiles use it one after another. Needs a
 // current GL context.
 struct Scene {
-    // `tiles`: px of their screens. The dataset is kept by reference.
+    // `tiles`: px of their screens. The dataset is kept by reference. `threads`: of visibility, with this
+    // one.
     static Result<std::unique_ptr<Scene>> create(const Dataset& dataset, std::span<const PixelRect> tiles,
-                                                 const Settings& settings);
+                                                 const Settings& settings, unsigned threads);
 
     // The next frame is drawn with these; what is not live stays as it was.
     Result<void> apply(const Settings& settings);
 
-    explicit Scene(const Dataset& from) : dataset(from), visibility(from.hierarchy) {}
+    Scene(const Dataset& from, unsigned threads)
+        : dataset(from), visibility(from.hierarchy), workers(threads) {}
 
     const Dataset& dataset;
     const FrustumVisibility visibility;
+    Workers workers;  // of visibility
     Cut cut;
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<PageCache> cache;  // after the renderer, whose memory it uses

@@ -102,7 +102,7 @@ void TilePipeline::apply(const Settings& settings) {
     if (settings.show == Show::birdseye) birdsEye_.emplace(scene_, *pixels_);
     if (settings.mode == Mode::plp)
         plp_.emplace(scene_.dataset.hierarchy, scene_.visibility, *scene_.cache, *scene_.renderer,
-                     *scene_.pages, settings);
+                     *scene_.pages, scene_.workers, settings);
     if (settings.mode == Mode::cplp)
         conservative_.emplace(scene_.visibility, *scene_.cache, *scene_.renderer, *scene_.pages,
                               *scene_.occlusion, costOfLooking_);

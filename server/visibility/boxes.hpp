@@ -21,6 +21,17 @@ inline bool meets(const Frustum& frustum, const glm::dvec3& low, const glm::dvec
     return farthest(frustum.forward) >= frustum.near;
 }
 
+// Whether all of the box lies in the frustum.
+inline bool contains(const Frustum& frustum, const glm::dvec3& low, const glm::dvec3& high) {
+    const auto nearest = [&](const glm::dvec3& normal) {
+        return std::min(normal.x * low.x, normal.x * high.x) + std::min(normal.y * low.y, normal.y * high.y) +
+               std::min(normal.z * low.z, normal.z * high.z);
+    };
+    for (const glm::dvec3& plane : frustum.planes)
+        if (nearest(plane) < 0) return false;
+    return nearest(frustum.forward) >= frustum.near;
+}
+
 // Frustum in lattice steps.
 inline bool meets(const Frustum& frustum, const LatticeEye& eye, const LatticeBox& box) {
     return meets(frustum, eye.to(box.min), eye.to(box.max));

@@ -9,41 +9,43 @@
 namespace iwalk {
 namespace {
 
-// The farthest of 2 x 2 squares; a last row or column without a partner stands twice. Plain loops: compilers
-// make vectors of them.
-void halve(const float* from, int width, int height, float* to, int toWidth, std::vector<float>& row) {
-    row.resize(static_cast<std::size_t>(2 * toWidth));
-    for (int y = 0; y < height; y += 2) {
-        const float* upper = from + std::ptrdiff_t{y} * width;
-        const float* lower = y + 1 < height ? upper + width : upper;
+// The farthest of 2 x 2 squares, for rows [first, end) of the result; a last row or column without a partner
+// stands twice. Plain loops: compilers make vectors of them.
+void halve(const float* from, int width, int height, float* to, int first, int end) {
+    const int toWidth = (width + 1) / 2;
+    std::vector<float> row(static_cast<std::size_t>(2 * toWidth));
+    for (int y = first; y < end; ++y) {
+        const float* upper = from + std::ptrdiff_t{2 * y} * width;
+        const float* lower = 2 * y + 1 < height ? upper + width : upper;
         float* both = row.data();
         for (int x = 0; x < width; ++x) both[x] = std::min(upper[x], lower[x]);
         if (width & 1) both[width] = both[width - 1];
-        float* out = to + std::ptrdiff_t{y / 2} * toWidth;
+        float* out = to + std::ptrdiff_t{y} * toWidth;
         for (int x = 0; x < toWidth; ++x) out[x] = std::min(both[2 * x], both[2 * x + 1]);
     }
 }
 
+constexpr std::size_t kTogether = 64;  // rows that a thread takes
+
 }  // namespace
 
-void DepthPyramid::build(std::span<const float> depths, int width, int height) {
-    CHECK_OP(depths.size(), >=, static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+void DepthPyramid::build(std::vector<float>& depths, int width, int height, Workers& workers) {
+    CHECK_OP(depths.size(), ==, static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     const int levels = 1 + std::bit_width(static_cast<unsigned>(std::max({width, height, 1}) - 1));
     levels_.resize(static_cast<std::size_t>(levels));
-    std::vector<float> row;
-    const float* from = depths.data();
-    for (Level& level : levels_) {
-        const bool finest = &level == levels_.data();
-        level.width = finest ? width : (width + 1) / 2;
-        level.height = finest ? height : (height + 1) / 2;
-        level.farthest.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
-        if (finest)
-            std::copy_n(from, level.farthest.size(), level.farthest.data());
-        else
-            halve(from, width, height, level.farthest.data(), level.width, row);
-        from = level.farthest.data();
-        width = level.width;
-        height = level.height;
+    levels_.front().width = width, levels_.front().height = height;
+    levels_.front().farthest.swap(depths);
+    for (std::size_t i = 1; i < levels_.size(); ++i) {
+        const Level& finer = levels_[i - 1];
+        Level& level = levels_[i];
+        level.width = (finer.width + 1) / 2;
+        level.height = (finer.height + 1) / 2;
+        const auto rows = static_cast<std::size_t>(level.height);
+        level.farthest.resize(static_cast<std::size_t>(level.width) * rows);
+        workers.runParts(rows, kTogether, [&](std::size_t first, std::size_t end) {
+            halve(finer.farthest.data(), finer.width, finer.height, level.farthest.data(),
+                  static_cast<int>(first), static_cast<int>(end));
+        });
     }
 }
 
@@ -55,7 +57,7 @@ bool DepthPyramid::hides(const ScreenBox& box) const {
     return hides(box, std::min(level, static_cast<int>(levels_.size()) - 1));
 }
 
-double DepthPyramid::openPixels(const ScreenBox& box) const {
+float DepthPyramid::openPixels(const ScreenBox& box) const {
     if (box.empty()) return 0;
     constexpr int kRows = 16;
     const Level& pixels = levels_.front();
@@ -65,7 +67,7 @@ double DepthPyramid::openPixels(const ScreenBox& box) const {
         const float* row = pixels.farthest.data() + std::ptrdiff_t{y} * pixels.width;
         for (int x = box.left; x < box.right; ++x) open += row[x] <= box.depth ? 1 : 0;
     }
-    return static_cast<double>(open) * height / rows;
+    return static_cast<float>(open) * static_cast<float>(height) / static_cast<float>(rows);
 }
 
 bool DepthPyramid::hides(const ScreenBox& box, int index) const {
@@ -74,7 +76,9 @@ bool DepthPyramid::hides(const ScreenBox& box, int index) const {
     for (int y = box.top >> index; y <= (box.bottom - 1) >> index; ++y)
         for (int x = box.left >> index; x <= (box.right - 1) >> index; ++x) {
             if (level.farthest[static_cast<std::size_t>(y * level.width + x)] > box.depth) continue;
-            if (index == 0) return false;
+            const bool inside = x * size >= box.left && (x + 1) * size <= box.right && y * size >= box.top &&
+                                (y + 1) * size <= box.bottom;
+            if (inside) return false;  // the square's farthest pixel is one of the box
             const ScreenBox part{std::max(box.left, x * size), std::max(box.top, y * size),
                                  std::min(box.right, (x + 1) * size), std::min(box.bottom, (y + 1) * size),
                                  box.depth};

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "server/visibility/screen_box.hpp"
+#include "server/visibility/workers.hpp"
 
 namespace iwalk {
 
@@ -11,15 +11,16 @@ namespace iwalk {
 // Depths are reversed, so the farthest is the least.
 class DepthPyramid {
   public:
-    // Depths of the pixels (0, 0) to (width, height), row by row. Later questions must stay within them.
-    void build(std::span<const float> depths, int width, int height);
+    // `depths`: of the pixels (0, 0) to (width, height), row by row; what they were the last time is given
+    // back, to be filled again. Later questions must stay within them.
+    void build(std::vector<float>& depths, int width, int height, Workers& workers);
 
     // Whether all pixels of the box are strictly nearer than it. Exact to the pixel; the pyramid only makes
     // it fast.
     bool hides(const ScreenBox& box) const;
 
     // About how many pixels of the box are not strictly nearer than it: counted in 16 rows at the most.
-    double openPixels(const ScreenBox& box) const;
+    float openPixels(const ScreenBox& box) const;
 
   private:
     struct Level {

@@ -20,15 +20,11 @@ constexpr std::array<unsigned, 8> kBackToFront{7, 6, 5, 3, 4, 2, 1, 0};
 class Walk {
   public:
     Walk(const Hierarchy& hierarchy, const std::vector<LatticePoint>& cells, const Cut& cut,
-         const TileSight& sight, double raysPerPixel)
-        : hierarchy_(hierarchy),
-          cells_(cells),
-          cut_(cut),
-          eye_(sight.eye),
-          frustum_(sight.frustum()),
-          rays_(sight.projection, sight.tile, sight.near, raysPerPixel) {}
+         const TileSight& sight)
+        : hierarchy_(hierarchy), cells_(cells), cut_(cut), eye_(sight.eye), frustum_(sight.frustum()) {}
 
-    std::vector<EntryPriority> run() {
+    // Finds what rays are to cross, and sends them.
+    std::vector<EntryPriority> run(RayGrid rays, Workers& workers) {
         open_.push_back(0);
         while (!open_.empty()) {
             const std::uint32_t index = open_.back();
@@ -41,6 +37,12 @@ class Walk {
             else
                 openChildren(index);
         }
+        const std::vector<RayGrid::Arrival> arrivals = rays.cross(passes_, workers);
+        for (std::size_t i = 0; i < found_.size(); ++i) {
+            const RayGrid::Arrival& arrival = arrivals[passOf_[i]];
+            found_[i].rays = arrival.rays;
+            found_[i].contribution = arrival.contribution;
+        }
         return std::move(found_);
     }
 
@@ -50,8 +52,9 @@ class Walk {
         if (box.empty()) return;
         const glm::dvec3 low = eye_.to(box.min), high = eye_.to(box.max);
         if (!meets(frustum_, low, high)) return;
-        const RayGrid::Arrival arrival = rays_.arrivingAt({glm::vec3(low), glm::vec3(high)});
-        found_.push_back({index, entry, arrival.rays, arrival.contribution});
+        found_.push_back({index, entry});
+        passOf_.push_back(passes_.size());
+        passes_.push_back({{glm::vec3(low), glm::vec3(high)}, 0});
     }
 
     void crossLeaf(std::uint32_t index) {
@@ -61,7 +64,7 @@ class Walk {
         const EyeBox cell{glm::vec3(corner), glm::vec3(corner + edge)};
         const glm::vec3 direction = directionTo(cell.low, cell.high);
         const float meanLength = static_cast<float>(edge) / silhouetteArea(glm::vec3(1), direction);
-        rays_.pass(cell, opticalDepth(leaf, direction) / meanLength);
+        passes_.push_back({cell, opticalDepth(leaf, direction) / meanLength});
     }
 
     void openChildren(std::uint32_t index) {
@@ -86,9 +89,10 @@ class Walk {
     const Cut& cut_;
     const LatticeEye eye_;
     const Frustum frustum_;
-    RayGrid rays_;
-    std::vector<std::uint32_t> open_;  // nodes, the nearest at the end
+    std::vector<std::uint32_t> open_;    // nodes, the nearest at the end
+    std::vector<RayGrid::Pass> passes_;  // boxes of entries, and cells of leaves
     std::vector<EntryPriority> found_;
+    std::vector<std::size_t> passOf_;  // of found_
 };
 
 }  // namespace
@@ -110,8 +114,10 @@ glm::vec3 directionTo(const glm::vec3& low, const glm::vec3& high) {
 }
 
 std::vector<EntryPriority> entryPriorities(const Hierarchy& hierarchy, const std::vector<LatticePoint>& cells,
-                                           const Cut& cut, const TileSight& sight, double raysPerPixel) {
-    return Walk(hierarchy, cells, cut, sight, raysPerPixel).run();
+                                           const Cut& cut, const TileSight& sight, double raysPerPixel,
+                                           Workers& workers) {
+    return Walk(hierarchy, cells, cut, sight)
+        .run(RayGrid(sight.projection, sight.tile, sight.near, raysPerPixel), workers);
 }
 
 }  // namespace iwalk

@@ -6,6 +6,7 @@
 #include "common/dataset/hierarchy.hpp"
 #include "server/adapt/cut.hpp"
 #include "server/visibility/eye.hpp"
+#include "server/visibility/workers.hpp"
 #include "server/wall/projection.hpp"
 
 namespace iwalk {
@@ -46,6 +47,7 @@ glm::vec3 directionTo(const glm::vec3& low, const glm::vec3& high);
 // entry that stands for everything below its node, and an interior node's own triangles, get what arrives at
 // their box; what they hide is in the opacities of the leaves.
 std::vector<EntryPriority> entryPriorities(const Hierarchy& hierarchy, const std::vector<LatticePoint>& cells,
-                                           const Cut& cut, const TileSight& sight, double raysPerPixel);
+                                           const Cut& cut, const TileSight& sight, double raysPerPixel,
+                                           Workers& workers);
 
 }  // namespace iwalk

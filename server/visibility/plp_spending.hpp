@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "server/visibility/depth_pyramid.hpp"
+#include "server/visibility/workers.hpp"
 
 namespace iwalk {
 
@@ -32,7 +33,7 @@ class PlpSpending {
     // No more steps: everything is taken, or nothing fits.
     bool done() const { return done_; }
     // Before the next step: what was drawn so far. The result is the number of ranges that are hidden.
-    std::size_t look(const DepthPyramid& drawn);
+    std::size_t look(const DepthPyramid& drawn, Workers& workers);
 
     std::uint64_t left() const { return budget_ - spent_; }
 

@@ -28,7 +28,8 @@ struct PlpRange {
 // to 16,384 triangles, few of which own a pixel, so ranges are chosen; and what counts is the sum over rays
 // for each triangle drawn: as many pixels as the budget can buy.
 //
-// The result depends on the dataset, the cut and the tile's view alone: not on what is resident.
+// The result depends on the dataset, the cut and the tile's view alone: not on what is resident, nor on how
+// many threads there are.
 class PlpVisibility {
   public:
     // An entry of the cut whose ranges are to be looked at.
@@ -36,11 +37,12 @@ class PlpVisibility {
         std::uint32_t node = 0, entry = 0;  // indices in Hierarchy
         float arriving = 1;  // what a ray that meets its box has left on average; 1 if none does
     };
-    // The table of a page, or nullptr where the page cannot be read: its ranges are left out.
+    // The table of a page, or nullptr where the page cannot be read: its ranges are left out. Called by all
+    // threads.
     using Tables = std::function<const PageTable*(std::uint32_t page)>;
 
-    // The hierarchy is kept by reference. `budget`: triangles; `raysPerPixel`: (0, 1].
-    PlpVisibility(const Hierarchy& hierarchy, std::uint64_t budget, double raysPerPixel);
+    // The hierarchy and the workers are kept by reference. `budget`: triangles; `raysPerPixel`: (0, 1].
+    PlpVisibility(const Hierarchy& hierarchy, std::uint64_t budget, double raysPerPixel, Workers& workers);
 
     // By priority.
     std::vector<Candidate> candidates(const Cut& cut, const TileSight& sight) const;
@@ -56,6 +58,7 @@ class PlpVisibility {
     const std::vector<LatticePoint> cells_;  // of nodes
     const std::uint64_t budget_;
     const double raysPerPixel_;
+    Workers& workers_;
 };
 
 }  // namespace iwalk

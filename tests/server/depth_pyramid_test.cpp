@@ -14,6 +14,13 @@ bool hidesByLooking(const std::vector<float>& depths, int width, const ScreenBox
     return true;
 }
 
+DepthPyramid pyramidOf(std::vector<float> depths, int width, int height, unsigned threads = 1) {
+    DepthPyramid pyramid;
+    Workers workers(threads);
+    pyramid.build(depths, width, height, workers);
+    return pyramid;
+}
+
 TEST(DepthPyramid, IsExactToThePixel) {
     std::mt19937 random(3);
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
@@ -22,8 +29,7 @@ TEST(DepthPyramid, IsExactToThePixel) {
         std::vector<float> depths(static_cast<std::size_t>(width * height), 0.5f);
         for (int i = 0; i < width * height / 50; ++i)
             depths[random() % depths.size()] = static_cast<float>(below(5)) / 4;
-        DepthPyramid pyramid;
-        pyramid.build(depths, width, height);
+        const DepthPyramid pyramid = pyramidOf(depths, width, height, 3);
         int hidden = 0;
         for (int i = 0; i < 3000; ++i) {
             ScreenBox box;
@@ -41,16 +47,14 @@ TEST(DepthPyramid, IsExactToThePixel) {
 }
 
 TEST(DepthPyramid, ASurfaceAsNearAsTheBoxHidesNothing) {
-    DepthPyramid pyramid;
-    pyramid.build(std::vector<float>(12, 0.25f), 4, 3);
+    const DepthPyramid pyramid = pyramidOf(std::vector<float>(12, 0.25f), 4, 3);
     EXPECT_FALSE(pyramid.hides({1, 1, 3, 2, 0.25f}));
     EXPECT_TRUE(pyramid.hides({1, 1, 3, 2, std::nextafter(0.25f, 0.0f)}));
     EXPECT_FALSE(pyramid.hides({0, 0, 4, 3, ScreenBox::kAtTheEye}));
 }
 
 TEST(DepthPyramid, NothingHidesWhereNothingIsDrawn) {
-    DepthPyramid pyramid;
-    pyramid.build(std::vector<float>(12, 0.0f), 4, 3);
+    const DepthPyramid pyramid = pyramidOf(std::vector<float>(12, 0.0f), 4, 3);
     EXPECT_FALSE(pyramid.hides({0, 0, 1, 1, 0}));
     EXPECT_TRUE(pyramid.hides({2, 2, 2, 3, 1}));  // no pixel, nothing to be seen
 }
@@ -58,8 +62,7 @@ TEST(DepthPyramid, NothingHidesWhereNothingIsDrawn) {
 TEST(DepthPyramid, OpenPixelsAreCounted) {
     std::vector<float> depths(20 * 40, 0.5f);
     for (std::size_t y = 0; y < 40; ++y) depths[20 * y + y % 20] = 0.25f;  // a pixel in each row
-    DepthPyramid pyramid;
-    pyramid.build(depths, 20, 40);
+    const DepthPyramid pyramid = pyramidOf(depths, 20, 40);
     EXPECT_EQ(pyramid.openPixels({0, 0, 20, 16, 0.3f}), 16);  // few rows: exact
     EXPECT_EQ(pyramid.openPixels({0, 0, 20, 40, 0.3f}), 40);  // some of the rows stand for all
     EXPECT_EQ(pyramid.openPixels({0, 0, 20, 40, 0.1f}), 0);

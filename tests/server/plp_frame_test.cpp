@@ -61,6 +61,22 @@ TEST_F(PlpFrameTest, EnoughBudgetDrawsAllAndDoesNotLook) {
     EXPECT_EQ(some.stats().hiddenRanges, 0u);
 }
 
+TEST_F(PlpFrameTest, TheNumberOfThreadsMakesNoDifference) {
+    const Dataset dataset = squares();
+    const Wall wall = wallOf(1400, 240, 1, 1);
+    const Camera aside{{-4, 9, 0.2}, {5, 0.1, 0.2}, {0, 0, 1}, 60};
+    for (const Mode mode : {Mode::plp, Mode::cplp}) {
+        WallServers one(dataset, wall, settings(mode, 3000), 0),
+            three(dataset, wall, settings(mode, 3000), 0, 0, 3);
+        for (const Camera& camera : {aside, ahead_, aside}) {
+            const Comparison comparison = compare(one.draw(camera), three.draw(camera), std::nullopt);
+            EXPECT_EQ(comparison.different, 0u);
+            EXPECT_EQ(one.stats().triangles, three.stats().triangles);
+            EXPECT_EQ(one.stats().hiddenRanges, three.stats().hiddenRanges);
+        }
+    }
+}
+
 TEST_F(PlpFrameTest, ThePictureDependsOnTheViewAlone) {
     const Dataset dataset = squares();
     const Wall wall = wallOf(1400, 240, 1, 1);

@@ -15,10 +15,17 @@ Numbers numbersOf(const std::vector<PlpSpending::Taken>& taken) {
     return numbers;
 }
 
+std::size_t look(PlpSpending& spending, const DepthPyramid& drawn) {
+    Workers workers(2);
+    return spending.look(drawn, workers);
+}
+
 // 10 x 10 pixels at one depth.
 DepthPyramid flat(float depth) {
     DepthPyramid pyramid;
-    pyramid.build(std::vector<float>(100, depth), 10, 10);
+    Workers alone(1);
+    std::vector<float> depths(100, depth);
+    pyramid.build(depths, 10, 10, alone);
     return pyramid;
 }
 
@@ -43,7 +50,7 @@ TEST(PlpSpendingTest, WhatIsHiddenIsLeftOut) {
         {{0, 10, {0, 0, 5, 5, 0.9f}}, {1, 90, {0, 0, 5, 5, 0.4f}}, {2, 40, {0, 0, 5, 5, 0.6f}}}, 100);
     EXPECT_EQ(numbersOf(spending.step()), Numbers{0});
     EXPECT_FALSE(spending.done());
-    EXPECT_EQ(spending.look(flat(0.5f)), 1u);
+    EXPECT_EQ(look(spending, flat(0.5f)), 1u);
     EXPECT_TRUE(spending.step().empty());  // 40 are too many for this step
     EXPECT_EQ(numbersOf(spending.step()), Numbers{2});
     EXPECT_TRUE(spending.done());
@@ -59,7 +66,7 @@ TEST(PlpSpendingTest, ALookOrdersByOpenPixelsPerTriangle) {
     ranges.push_back({5, 90, {0, 0, 10, 10, 0.6f}});
     PlpSpending spending(ranges, 100);
     EXPECT_EQ(numbersOf(spending.step()), (Numbers{0, 4}));
-    EXPECT_EQ(spending.look(flat(0.5f)), 0u);
+    EXPECT_EQ(look(spending, flat(0.5f)), 0u);
     EXPECT_EQ(numbersOf(spending.step()), (Numbers{3, 2, 1}));
 }
 
@@ -84,7 +91,7 @@ TEST(PlpSpendingTest, TheBudgetIsKeptWhateverLooksSay) {
                 EXPECT_GE(t.spent, 0);
                 EXPECT_LT(t.spent, 1);
             }
-            if (!spending.done()) spending.look(flat(float(random() % 8) / 8));
+            if (!spending.done()) look(spending, flat(float(random() % 8) / 8));
         }
         EXPECT_LE(spent, budget);
         EXPECT_EQ(spending.left(), budget - spent);

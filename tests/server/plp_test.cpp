@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "server/visibility/frustum_visibility.hpp"
@@ -23,6 +24,7 @@ struct Grid {
     std::vector<PageTable> tables;
     std::vector<LatticePoint> cells;
     Cut cut;
+    mutable Workers workers{2};
 
     explicit Grid(std::uint8_t opacity = 0) {
         hierarchy.rootCellLog2 = 8;
@@ -101,7 +103,7 @@ struct Grid {
                 std::ranges::fill(node.opacity, opacity);
     }
     std::vector<EntryPriority> priorities(const TileSight& sight, double rays = 0.01) const {
-        return entryPriorities(hierarchy, cells, cut, sight, rays);
+        return entryPriorities(hierarchy, cells, cut, sight, rays, workers);
     }
     // What arrives on average at the leaves of a layer, by ray.
     double meanOfLayer(std::int64_t x, const TileSight& sight) const {
@@ -113,7 +115,7 @@ struct Grid {
         return contribution / rays;
     }
     std::vector<PlpRange> ranked(const TileSight& sight, std::uint64_t budget) const {
-        const PlpVisibility plp(hierarchy, budget, 0.01);
+        const PlpVisibility plp(hierarchy, budget, 0.01, workers);
         return plp.ranges(
             plp.candidates(cut, sight), [&](std::uint32_t page) { return &tables[page]; }, sight);
     }
@@ -196,15 +198,22 @@ TEST(RayGridTest, RaysParallelToAnAxis) {
     projection.toDirection = glm::dmat3(glm::dvec3(0), glm::dvec3(0), glm::dvec3(0, 0, 1));
     projection.toPixels = glm::dmat3(1);
     RayGrid rays(projection, {0, 0, 8, 8}, 1, 1);
-    EXPECT_EQ(rays.arrivingAt({glm::vec3(-1, -1, 5), glm::vec3(1, 1, 6)}).rays, 1);  // of the cells it meets
-    EXPECT_EQ(rays.arrivingAt({glm::vec3(0.1f, 0, 5), glm::vec3(1, 0, 6)}).rays, 0);
-    EXPECT_NEAR(rays.pass({glm::vec3(-1, -1, 5), glm::vec3(1, 1, 6)}, std::log(2.0f)).contribution, 1, 1e-6);
-    EXPECT_NEAR(rays.pass({glm::vec3(-1, -1, 7), glm::vec3(1, 1, 8)}, 0).contribution, 0.5, 1e-6);
+    const EyeBox ahead{glm::vec3(-1, -1, 5), glm::vec3(1, 1, 6)},
+        aside{glm::vec3(0.1f, 0, 5), glm::vec3(1, 0, 6)};
+    const EyeBox behind{glm::vec3(-1, -1, 7), glm::vec3(1, 1, 8)};
+    const std::vector<RayGrid::Pass> passes{{ahead, 0}, {aside, 0}, {ahead, std::log(2.0f)}, {behind, 0}};
+    Workers workers(1);
+    const auto arrivals = rays.cross(passes, workers);
+    EXPECT_EQ(arrivals[0].rays, 1);  // of the cells it meets
+    EXPECT_EQ(arrivals[1].rays, 0);
+    EXPECT_NEAR(arrivals[2].contribution, 1, 1e-6);
+    EXPECT_NEAR(arrivals[3].contribution, 0.5, 1e-4);
 }
 
 TEST(RayGridTest, BoxesWithoutVolumeAndBoxesAnywhere) {
     const TileSight sight = sightFrom({0, 0, 0}, kAhead);
     RayGrid rays(sight.projection, sight.tile, sight.near, 0.01);
+    Workers workers(1);
     const float huge = 4e18f;
     for (const EyeBox& box :
          {EyeBox{glm::vec3(0), glm::vec3(0)}, EyeBox{glm::vec3(9, 1, 1), glm::vec3(9, 1, 1)},
@@ -212,11 +221,34 @@ TEST(RayGridTest, BoxesWithoutVolumeAndBoxesAnywhere) {
           EyeBox{glm::vec3(-9), glm::vec3(-8)}, EyeBox{glm::vec3(-huge), glm::vec3(huge)},
           EyeBox{glm::vec3(huge), glm::vec3(huge)}})
         for (const float density : {0.0f, 1.0f, 1e30f}) {
-            const RayGrid::Arrival arrival = rays.pass(box, density);
+            const RayGrid::Pass pass{box, density};
+            const RayGrid::Arrival arrival = rays.cross({&pass, 1}, workers).front();
             EXPECT_TRUE(std::isfinite(arrival.contribution)) << box.low.x << ' ' << box.high.x;
             EXPECT_GE(arrival.contribution, 0);
             EXPECT_LE(arrival.rays, 40 * 30);
         }
+}
+
+// Bit by bit, in grids of fewer rows than bands, too.
+TEST(RayGridTest, TheNumberOfThreadsMakesNoDifference) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> place(-30, 30), size(0, 9);
+    std::vector<RayGrid::Pass> passes;
+    for (int i = 0; i < 3000; ++i) {
+        const glm::vec3 low(20 + place(random) / 2, place(random), place(random));
+        passes.push_back(
+            {{low, low + glm::vec3(size(random), size(random), size(random))}, size(random) / 99});
+    }
+    const TileSight sight = sightFrom({0, 0, 0}, kAhead);
+    for (const double raysPerPixel : {0.01, 0.0001}) {
+        const RayGrid fresh(sight.projection, sight.tile, sight.near, raysPerPixel);
+        const auto cross = [&](unsigned threads) {
+            Workers workers(threads);
+            return RayGrid(fresh).cross(passes, workers);
+        };
+        const std::vector<RayGrid::Arrival> alone = cross(1);
+        for (const unsigned threads : {2u, 3u, 4u}) EXPECT_EQ(cross(threads), alone) << threads;
+    }
 }
 
 TEST(PlpVisibilityTest, TheBudgetIsKeptAndUsed) {
@@ -280,7 +312,7 @@ TEST(PlpVisibilityTest, NothingInViewAndFarAway) {
 
 TEST(PlpVisibilityTest, WithoutATableRangesAreLeftOut) {
     const Grid grid(0);
-    const PlpVisibility plp(grid.hierarchy, 1u << 20, 0.01);
+    const PlpVisibility plp(grid.hierarchy, 1u << 20, 0.01, grid.workers);
     const TileSight sight = sightFrom(kOutside, kAhead);
     const auto candidates = plp.candidates(grid.cut, sight);
     EXPECT_EQ(plp.pagesOf(candidates).size(), 64u);
@@ -292,7 +324,7 @@ TEST(PlpVisibilityTest, WithoutATableRangesAreLeftOut) {
 
 TEST(PlpVisibilityTest, CandidatesAreSeveralTimesTheBudget) {
     const Grid grid(0);
-    const PlpVisibility plp(grid.hierarchy, 1000, 0.01);
+    const PlpVisibility plp(grid.hierarchy, 1000, 0.01, grid.workers);
     EXPECT_EQ(plp.candidates(grid.cut, sightFrom(kOutside, kAhead)).size(), 15u);  // 6000 triangles
 }
 
@@ -310,7 +342,8 @@ TEST(PlpVisibilityTest, ATreeOfOneLeaf) {
 // What stands for all below a node is chosen in its place.
 TEST(PlpVisibilityTest, CutsOfCoarseLevels) {
     const Hierarchy hierarchy = makeHierarchy();
-    const PlpVisibility plp(hierarchy, 1000, 0.01);
+    Workers workers(1);
+    const PlpVisibility plp(hierarchy, 1000, 0.01, workers);
     const auto entries = [&](unsigned level) {
         std::set<std::uint32_t> found;
         const TileSight sight = sightFrom({-400, 0, 0}, kAhead);

@@ -46,14 +46,14 @@ Wall wallOf(int width, int height, int columns, int rows) {
 }
 
 WallServers::WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings,
-                         double costOfLooking, std::size_t ranks)
+                         double costOfLooking, std::size_t ranks, unsigned threads)
     : wall_(wall), near_(nearPlane(settings, dataset.manifest)) {
     const std::vector<std::string> hosts(ranks > 0 ? ranks : wall.tiles.size());
     const auto shares = tilesOfRanks(wall, hosts);
     CHECK(shares.ok());
     for (const std::vector<std::size_t>& share : *shares) {
         Result<std::unique_ptr<RankTiles>> rank =
-            RankTiles::create(dataset, wall, share, settings, costOfLooking);
+            RankTiles::create(dataset, wall, share, settings, costOfLooking, threads);
         if (!rank) detail::checkFailed(__FILE__, __LINE__, rank.error().message);
         ranks_.push_back(std::move(rank).value());
         for (std::size_t i = 0; i < share.size(); ++i) tiles_.push_back(&(*ranks_.back())[i]);

@@ -18,9 +18,10 @@ Wall wallOf(int width, int height, int columns, int rows);
 class WallServers {
   public:
     // Both are kept by reference. `costOfLooking`: of ConservativeDrawing. `ranks`: how many share the tiles;
-    // 0: one for each.
+    // 0: one for each. `threads`: of visibility, of each rank.
     WallServers(const Dataset& dataset, const Wall& wall, const Settings& settings,
-                double costOfLooking = ConservativeDrawing::kCostOfLooking, std::size_t ranks = 0);
+                double costOfLooking = ConservativeDrawing::kCostOfLooking, std::size_t ranks = 0,
+                unsigned threads = 1);
     // Draws tile after tile; colour and eye-space depth of the whole wall.
     Picture draw(const Camera& camera);
     // The same without pictures, as when nobody captures.

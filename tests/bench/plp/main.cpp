@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -27,7 +28,8 @@ struct Options {
     std::vector<int> tiles{1, 4};
     std::vector<std::uint64_t> budgets{35000, 70000, 140000, 280000};
     double rays = Settings().plpRays;
-    bool colors = false;
+    unsigned threads = 1;
+    bool alone = false, colors = false;
 };
 
 // `frames` cameras on straight lines between those of the path, evenly.
@@ -92,20 +94,23 @@ std::vector<Spread> equalColors(const Bench& bench, const Options& options, int 
                                 const std::vector<Camera>& cameras) {
     const Wall wall = tools::wallOf(n * options.width, n * options.height, n, n);
     Settings settings;
-    // All tiles of a wall together have at most 2 GB.
-    settings.cacheBytes = std::min(settings.cacheBytes, (std::uint64_t{2} << 30) / wall.tiles.size());
+    // One rank has all tiles of a wall, so that pages are in memory once for each budget.
+    const auto servers = [&] {
+        return std::make_unique<tools::WallServers>(bench.dataset, wall, settings,
+                                                    ConservativeDrawing::kCostOfLooking, 1, options.threads);
+    };
     settings.mode = Mode::frustum;
-    tools::WallServers complete(bench.dataset, wall, settings);
+    const std::unique_ptr<tools::WallServers> complete = servers();
     settings.mode = Mode::plp;
     settings.plpRays = options.rays;
     std::vector<std::unique_ptr<tools::WallServers>> walls;
     for (const std::uint64_t budget : options.budgets) {
         settings.plpBudget = budget;
-        walls.push_back(std::make_unique<tools::WallServers>(bench.dataset, wall, settings));
+        walls.push_back(servers());
     }
     std::vector<std::vector<double>> shares(walls.size());
     for (const Camera& camera : cameras) {
-        const tools::Picture picture = complete.draw(camera);
+        const tools::Picture picture = complete->draw(camera);
         for (std::size_t i = 0; i < walls.size(); ++i) {
             const tools::Comparison c = compare(picture, walls[i]->draw(camera), std::nullopt);
             shares[i].push_back(100 - 100.0 * static_cast<double>(c.color.different) /
@@ -134,7 +139,9 @@ json accuracy(const Bench& bench, const Options& options, int n, const std::vect
     std::printf("\n| --- |");
     for (std::size_t i = 0; i < options.budgets.size(); ++i) std::printf(" --- |");
     json rows = json::array();
-    for (const Method& method : allMethods(bench, original, renders)) {
+    const std::vector<Method> methods =
+        options.alone ? std::vector{modePlp(bench, renders)} : allMethods(bench, original, renders);
+    for (const Method& method : methods) {
         std::printf("\n| %s |", method.name.c_str());
         for (const std::uint64_t budget : options.budgets)
             rows.push_back(addRow(n, method.name, budget, accuracyOf(method, frames, budget)));
@@ -163,19 +170,31 @@ double trianglesInView(const Bench& bench, const FrustumVisibility& visibility, 
     return triangles;
 }
 
+// Of all threads.
+double processorMs() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
 // What a tile costs, and how many triangles the ranges have that own a pixel.
 json costs(const Bench& bench, const Options& options, int n, const std::vector<std::vector<Shot>>& frames) {
     const FrustumVisibility visibility(bench.dataset.hierarchy);
-    const PlpVisibility plp(bench.dataset.hierarchy, options.budgets.back(), bench.raysPerPixel);
+    const PlpVisibility plp(bench.dataset.hierarchy, options.budgets.back(), bench.raysPerPixel,
+                            *bench.workers);
     const auto table = [&](std::uint32_t page) { return &bench.pages.tables[page]; };
-    std::vector<double> nodes, ranges, perMillion, inView, owners;
+    std::vector<double> nodes, ranges, nodesCpu, rangesCpu, perMillion, inView, owners;
     for (const std::vector<Shot>& shots : frames)
         for (const Shot& shot : shots) {
             Stopwatch watch;
+            const double begin = processorMs();
             const auto candidates = plp.candidates(bench.cut, shot.sight);
             nodes.push_back(watch.lap());
+            const double between = processorMs();
             plp.ranges(candidates, table, shot.sight);
             ranges.push_back(watch.lap());
+            nodesCpu.push_back(between - begin);
+            rangesCpu.push_back(processorMs() - between);
             inView.push_back(trianglesInView(bench, visibility, shot.sight) / 1e6);
             if (inView.back() > 0) perMillion.push_back((nodes.back() + ranges.back()) / inView.back());
             double triangles = 0;
@@ -184,10 +203,12 @@ json costs(const Bench& bench, const Options& options, int n, const std::vector<
             owners.push_back(triangles);
         }
     const double megapixels = double(options.width) * options.height / 1e6;
-    const double nodesMs = spreadOf(nodes).median, rangesMs = spreadOf(ranges).median;
+    const auto perMegapixel = [&](const std::vector<double>& ms) { return spreadOf(ms).median / megapixels; };
     const json row{{"tiles", n * n},
-                   {"nodes_ms_per_megapixel", nodesMs / megapixels},
-                   {"ranges_ms_per_megapixel", rangesMs / megapixels},
+                   {"nodes_ms_per_megapixel", perMegapixel(nodes)},
+                   {"nodes_cpu_ms_per_megapixel", perMegapixel(nodesCpu)},
+                   {"ranges_ms_per_megapixel", perMegapixel(ranges)},
+                   {"ranges_cpu_ms_per_megapixel", perMegapixel(rangesCpu)},
                    {"ms_per_million_triangles_in_view", perMillion.empty() ? 0 : spreadOf(perMillion).median},
                    {"million_triangles_in_view", spreadOf(inView).median},
                    {"triangles_of_owners_median", spreadOf(owners).median},
@@ -208,6 +229,7 @@ Result<void> run(const Options& options) {
     ASSIGN_OR_RETURN(bench.pages, loadPages(bench.dataset, bench.cut));
     bench.cells = cellsOfNodes(bench.dataset.hierarchy);
     bench.raysPerPixel = options.rays / 100;
+    bench.workers = std::make_unique<Workers>(options.threads);
     const std::vector<Camera> cameras = along(path, options.frames);
 
     json report{{"dataset", options.dataset},   {"triangles", bench.dataset.manifest.triangles},
@@ -248,6 +270,8 @@ int main(int argc, char** argv) {
     app.add_option("--height", options.height, "px of a tile")->check(CLI::Range(1, 16384));
     app.add_option("--budgets", options.budgets, "triangles of a tile")->check(CLI::PositiveNumber);
     app.add_option("--rays", options.rays, "as iwalk-server's --plp-rays")->check(CLI::Range(0.001, 10.0));
+    app.add_option("--threads", options.threads, "of visibility")->check(CLI::Range(1u, Workers::kMost));
+    app.add_flag("--alone", options.alone, "mode plp without other ways to choose");
     app.add_flag("--colors", options.colors, "count pixels of equal colour, too, as the papers do");
     app.add_option("--json", options.json, "file for all figures");
     try {

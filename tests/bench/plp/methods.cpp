@@ -46,8 +46,8 @@ Method wholeEntries(const char* name, const Bench& bench, EntryScore score) {
     return {name, [&bench, score](const Shot& shot, std::uint64_t budget) {
                 const Hierarchy& hierarchy = bench.dataset.hierarchy;
                 std::vector<Item> items;
-                for (const EntryPriority& found :
-                     entryPriorities(hierarchy, bench.cells, bench.cut, shot.sight, bench.raysPerPixel)) {
+                for (const EntryPriority& found : entryPriorities(
+                         hierarchy, bench.cells, bench.cut, shot.sight, bench.raysPerPixel, *bench.workers)) {
                     const LevelRecord& entry = hierarchy.entries[found.entry];
                     addEntry(hierarchy, entry, score(found, entry), items);
                 }
@@ -56,13 +56,15 @@ Method wholeEntries(const char* name, const Bench& bench, EntryScore score) {
 }
 
 std::vector<PlpRange> rangesByRays(const Bench& bench, const Shot& shot, std::uint64_t budget) {
-    const PlpVisibility plp(bench.dataset.hierarchy, budget, bench.raysPerPixel);
+    const PlpVisibility plp(bench.dataset.hierarchy, budget, bench.raysPerPixel, *bench.workers);
     const auto table = [&](std::uint32_t page) { return &bench.pages.tables[page]; };
     return plp.ranges(plp.candidates(bench.cut, shot.sight), table, shot.sight);
 }
 
+}  // namespace
+
 // As PlpFrame does, with the tile as one block.
-Method ours(const Bench& bench, OwnerRenders& renders) {
+Method modePlp(const Bench& bench, OwnerRenders& renders) {
     return {"rays, ranges, looks (`--mode plp`)", [&](const Shot& shot, std::uint64_t budget) {
                 const std::vector<PlpRange> ranges = rangesByRays(bench, shot, budget);
                 const BoxProjection boxes(shot.sight.projection, shot.sight.tile, shot.sight.near);
@@ -79,12 +81,14 @@ Method ours(const Bench& bench, OwnerRenders& renders) {
                         chosen.push_back({ranges[taken.number].page, ranges[taken.number].range, 1});
                     if (spending.done()) return chosen;
                     DepthPyramid drawn;
-                    drawn.build(renders.depthsOf(shot.sight, chosen), shot.sight.tile.width,
-                                shot.sight.tile.height);
-                    spending.look(drawn);
+                    std::vector<float> depths = renders.depthsOf(shot.sight, chosen);
+                    drawn.build(depths, shot.sight.tile.width, shot.sight.tile.height, *bench.workers);
+                    spending.look(drawn, *bench.workers);
                 }
             }};
 }
+
+namespace {
 
 Method withoutLooks(const Bench& bench) {
     return {"rays, ranges", [&bench](const Shot& shot, std::uint64_t budget) {
@@ -139,7 +143,7 @@ Method oracleOfEntries(const Bench& bench) {
 
 std::vector<Method> allMethods(const Bench& bench, const OriginalPlp& original, OwnerRenders& renders) {
     return {
-        ours(bench, renders),
+        modePlp(bench, renders),
         withoutLooks(bench),
         wholeEntries("rays, whole nodes, sum per triangle", bench,
                      [](const EntryPriority& p, const LevelRecord& entry) {

@@ -17,6 +17,7 @@ struct Bench {
     CutPages pages;
     std::vector<LatticePoint> cells;  // of nodes
     double raysPerPixel = 0;
+    std::unique_ptr<Workers> workers;
 };
 
 // One tile in one frame, and the truth about it.
@@ -33,6 +34,8 @@ struct Method {
 
 // Ours, others by rays, the original, and two that know the truth.
 std::vector<Method> allMethods(const Bench& bench, const OriginalPlp& original, OwnerRenders& renders);
+// Ours.
+Method modePlp(const Bench& bench, OwnerRenders& renders);
 
 // Pixels of a tile that show what they would when nothing were missing, when the owners of all others are
 // not drawn.

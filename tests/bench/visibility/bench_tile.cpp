@@ -17,10 +17,10 @@ T orEnd(Result<T> result) {
     return std::move(result).value();
 }
 
-std::unique_ptr<Occlusion> occlusionOf(Method method, Renderer& renderer) {
+std::unique_ptr<Occlusion> occlusionOf(Method method, Renderer& renderer, Workers& workers) {
     if (method == Method::items) return makeItemBuffer(renderer);
-    return orEnd(
-        makeOcclusion(method == Method::hzb ? OcclusionTest::hzb : OcclusionTest::queries, renderer));
+    return orEnd(makeOcclusion(method == Method::hzb ? OcclusionTest::hzb : OcclusionTest::queries, renderer,
+                               workers));
 }
 
 SceneLook lookOf(const Dataset& dataset) {
@@ -41,8 +41,11 @@ Block onlyBlock(const TileView& view) {
 
 }  // namespace
 
-BenchTile::BenchTile(const Dataset& dataset, const PixelRect& rect, Method method)
-    : dataset_(dataset), cut_(cutAtLevel(dataset.hierarchy, kFullLevel)), visibility_(dataset.hierarchy) {
+BenchTile::BenchTile(const Dataset& dataset, const PixelRect& rect, Method method, unsigned threads)
+    : dataset_(dataset),
+      cut_(cutAtLevel(dataset.hierarchy, kFullLevel)),
+      visibility_(dataset.hierarchy),
+      workers_(threads) {
     std::uint64_t bytes = 0;
     for (const PageRecord& page : dataset.hierarchy.pages) bytes += pageLayout(page).bytes;
     pixels_ = orEnd(TilePixels::create(rect.width, rect.height));
@@ -53,7 +56,7 @@ BenchTile::BenchTile(const Dataset& dataset, const PixelRect& rect, Method metho
                                     Arena(memory_, Renderer::kArenaAlignment), 2);
     pages_.emplace(dataset.hierarchy, *cache_, *renderer_);
     if (method == Method::frustum) return;
-    occlusion_ = occlusionOf(method, *renderer_);
+    occlusion_ = occlusionOf(method, *renderer_, workers_);
     conservative_.emplace(visibility_, *cache_, *renderer_, *pages_, *occlusion_, 0);
 }
 
@@ -103,7 +106,8 @@ std::vector<VisibleRanges> BenchTile::notHidden(const TileView& view) {
     std::vector<float> depths;
     const glm::ivec2 size = renderer_->readBlockDepths(depths);
     DepthPyramid pyramid;
-    pyramid.build(depths, size.x, size.y);
+    Workers alone(1);
+    pyramid.build(depths, size.x, size.y, alone);
     const std::vector<VisibleRanges> all = inFrustum(view);
     const BlockView block(view, onlyBlock(view));
     cache_->beginFrame(pagesOf(all));

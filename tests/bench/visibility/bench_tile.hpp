@@ -13,7 +13,7 @@ enum class Method { frustum, hzb, queries, items };
 class BenchTile {
   public:
     // The dataset outlives it.
-    BenchTile(const Dataset& dataset, const PixelRect& rect, Method method);
+    BenchTile(const Dataset& dataset, const PixelRect& rect, Method method, unsigned threads);
 
     // Return when the pixels are there; drawMs is the time of the whole frame.
     protocol::TileStats draw(const TileView& view);
@@ -35,6 +35,7 @@ class BenchTile {
     const Dataset& dataset_;
     const Cut cut_;
     const FrustumVisibility visibility_;
+    Workers workers_;
     std::unique_ptr<TilePixels> pixels_;
     std::unique_ptr<Renderer> renderer_;
     std::vector<std::span<std::byte>> memory_;

@@ -1,6 +1,5 @@
 #include "tests/bench/visibility/bench_wall.hpp"
 
-#include <algorithm>
 #include <ctime>
 
 #include "server/frame/tile_counters.hpp"
@@ -8,12 +7,9 @@
 namespace iwalk::bench {
 namespace {
 
-// All tiles of a wall together have at most 4 GB.
-Settings inMode(Mode mode, int tiles) {
+Settings inMode(Mode mode) {
     Settings settings;
     settings.mode = mode;
-    settings.cacheBytes =
-        std::min(settings.cacheBytes, (std::uint64_t{4} << 30) / static_cast<unsigned>(tiles));
     return settings;
 }
 
@@ -39,11 +35,12 @@ void draw(const std::string& name, tools::WallServers& servers, const Camera& ca
 
 }  // namespace
 
-BenchWall::BenchWall(const Dataset& dataset, int width, int height, int n, double costOfLooking)
+BenchWall::BenchWall(const Dataset& dataset, int width, int height, int n, double costOfLooking,
+                     unsigned threads)
     : wall_(tools::wallOf(n * width, n * height, n, n)),
-      frustum_(dataset, wall_, inMode(Mode::frustum, n * n)),
-      cplp_(dataset, wall_, inMode(Mode::cplp, n * n), costOfLooking),
-      plp_(dataset, wall_, inMode(Mode::plp, n * n)) {}
+      frustum_(dataset, wall_, inMode(Mode::frustum), costOfLooking, 1),
+      cplp_(dataset, wall_, inMode(Mode::cplp), costOfLooking, 1, threads),
+      plp_(dataset, wall_, inMode(Mode::plp), costOfLooking, 1, threads) {}
 
 void BenchWall::drawFrame(const Camera& camera, Series& series) {
     draw("frustum", frustum_, camera, series);

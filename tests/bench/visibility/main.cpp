@@ -22,6 +22,7 @@ struct Options {
     std::string dataset, views;
     int frames = 10, width = 1024, height = 768, tiles = 0;
     double step = 0.001, costOfLooking = ConservativeDrawing::kCostOfLooking;
+    unsigned threads = 1;
     bool slow = false;
 };
 
@@ -66,12 +67,12 @@ void note(Series& series, const std::string& name, const protocol::TileStats& st
 
 struct Tiles {
     BenchTile frustum, hzb, queries, items, oracle;
-    Tiles(const Dataset& dataset, const PixelRect& rect)
-        : frustum(dataset, rect, Method::frustum),
-          hzb(dataset, rect, Method::hzb),
-          queries(dataset, rect, Method::queries),
-          items(dataset, rect, Method::items),
-          oracle(dataset, rect, Method::frustum) {}
+    Tiles(const Dataset& dataset, const PixelRect& rect, unsigned threads)
+        : frustum(dataset, rect, Method::frustum, 1),
+          hzb(dataset, rect, Method::hzb, threads),
+          queries(dataset, rect, Method::queries, 1),
+          items(dataset, rect, Method::items, 1),
+          oracle(dataset, rect, Method::frustum, 1) {}
 };
 
 // All methods draw each frame one after the other, so that they share what else the machine does.
@@ -113,13 +114,14 @@ Result<void> run(const Options& options) {
     ASSIGN_OR_RETURN(const std::vector<Camera> views, loadCameraPath(options.views));
     ASSIGN_OR_RETURN(const std::unique_ptr<GlContext> context, GlContext::createHeadless());
     if (options.tiles > 0) {
-        bench::BenchWall wall(dataset, options.width, options.height, options.tiles, options.costOfLooking);
+        bench::BenchWall wall(dataset, options.width, options.height, options.tiles, options.costOfLooking,
+                              options.threads);
         fly(options, dataset.manifest, views,
             [&](const Camera& camera, Series& series) { wall.drawFrame(camera, series); });
         return {};
     }
     const Wall wall = tools::wallOf(options.width, options.height, 1, 1);
-    Tiles tiles(dataset, wall.tiles[0].onScreen);
+    Tiles tiles(dataset, wall.tiles[0].onScreen, options.threads);
     fly(options, dataset.manifest, views, [&](const Camera& camera, Series& series) {
         drawFrame(tiles, viewOf(dataset, wall, camera), options, series);
     });
@@ -151,6 +153,7 @@ int main(int argc, char** argv) {
     app.add_option("--cost-of-looking", options.costOfLooking,
                    "with --tiles: triangles a pixel that must be hidden for cplp to look for them; 0: always")
         ->check(CLI::NonNegativeNumber);
+    app.add_option("--threads", options.threads, "of visibility")->check(CLI::Range(1u, Workers::kMost));
     app.add_flag("--slow", options.slow, "with queries and items, too");
     try {
         app.parse(argc, argv);
