@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <thread>
 
 #include "server/gateway/gateway.hpp"
@@ -60,7 +61,9 @@ int connectToGateway() {
     constexpr std::uint32_t kFirst = 0x7f000002, kAddresses = 1u << 20;
     const sockaddr_in from = at(kFirst + count++ % kAddresses, 0), to = at(INADDR_LOOPBACK, gateway().port());
     CHECK_OP(::bind(socket, reinterpret_cast<const sockaddr*>(&from), sizeof from), ==, 0);
-    CHECK_OP(::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to), ==, 0);
+    // libFuzzer's timer may interrupt it.
+    while (::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)
+        CHECK_OP(errno, ==, EINTR);
     return socket;
 }
 
