@@ -56,7 +56,7 @@ class Build {
         ASSIGN_OR_RETURN(ChunkFile spill, ChunkFile::create(output_.temporary("triangles"), chunkBytes));
         ASSIGN_OR_RETURN(std::vector<Bin> bins, distribute(format, spill));
         progress_.triangles(manifest_.triangles);
-        RETURN_IF_ERROR(assemble(format, spill, std::move(bins)));
+        RETURN_IF_ERROR(assemble(format, std::move(spill), std::move(bins)));
         progress_.phase("committing");
         RETURN_IF_ERROR(output_.commit(manifest_));
         return manifest_;
@@ -156,7 +156,7 @@ class Build {
         return readTouched(*old_, tree_, *store, add, part());
     }
 
-    Result<void> assemble(const RecordFormat& format, ChunkFile& spill, std::vector<Bin> bins) {
+    Result<void> assemble(const RecordFormat& format, ChunkFile spill, std::vector<Bin> bins) {
         progress_.phase("building pages");
         malloc_trim(0);  // what reading took is building's now
         const std::string pagesName = fmt::format("pages-{}.bin", output_.generation());
@@ -168,7 +168,7 @@ class Build {
         ASSIGN_OR_RETURN(VertexErrors errors, VertexErrors::create(output_.temporaryDirectory()));
         PageWriter writer(pages, static_cast<std::uint16_t>(files), lattice_, format, attributes,
                           std::move(errors), old_ != nullptr ? old_->pages : std::vector<PageRecord>());
-        ASSIGN_OR_RETURN(LevelModel model, buildPages(format, spill, std::move(bins), writer));
+        ASSIGN_OR_RETURN(LevelModel model, buildPages(format, std::move(spill), std::move(bins), writer));
         setBounds(Hierarchy::box(model.nodes[0]));
         RETURN_IF_ERROR(buildLevels(model, pages.path(), writer));
         RETURN_IF_ERROR(pages.sync());
@@ -179,8 +179,8 @@ class Build {
         return finish(hierarchy);
     }
 
-    // The octree and the pages of full resolution.
-    Result<LevelModel> buildPages(const RecordFormat& format, ChunkFile& spill, std::vector<Bin> bins,
+    // The octree and the pages of full resolution. What was spilled is gone afterwards: levels need the room.
+    Result<LevelModel> buildPages(const RecordFormat& format, ChunkFile spill, std::vector<Bin> bins,
                                   PageWriter& writer) {
         Assembler assembler(format, lattice_, assembleOptions(format), spill, writer, tree_);
         RETURN_IF_ERROR(assembler.run(std::move(bins)));
