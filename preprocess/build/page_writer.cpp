@@ -1,25 +1,21 @@
 #include "preprocess/build/page_writer.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
-#include <algorithm>
+#include "preprocess/build/parallel.hpp"
 
 namespace iwalk {
 
 Result<void> PageWriter::write(std::vector<PageJob> jobs, const EntryOf& entryOf, tbb::task_arena& arena) {
-    // A few pages a thread at a time: what is built and not yet written stays small.
-    const std::size_t step = 4 * static_cast<std::size_t>(arena.max_concurrency());
-    for (std::size_t begin = 0; begin < jobs.size(); begin += step) {
-        std::vector<BuiltPage> built(std::min(step, jobs.size() - begin));
-        arena.execute([&] {
-            tbb::parallel_for(std::size_t{0}, built.size(), [&](std::size_t i) {
-                built[i] = buildPage(jobs[begin + i], lattice_, format_, attributes_);
-                jobs[begin + i] = {};
-            });
-        });
-        for (BuiltPage& page : built) RETURN_IF_ERROR(append(page, entryOf));
-    }
-    return {};
+    std::vector<BuiltPage> built(jobs.size());
+    const auto build = [&](std::size_t i) -> Result<void> {
+        built[i] = buildPage(jobs[i], lattice_, format_, attributes_);
+        jobs[i] = {};
+        return {};
+    };
+    const auto finish = [&](std::size_t i) {
+        BuiltPage page = std::move(built[i]);
+        return append(page, entryOf);
+    };
+    return orderedFor(arena, 0, jobs.size(), build, finish);
 }
 
 Result<void> PageWriter::append(BuiltPage& page, const EntryOf& entryOf) {

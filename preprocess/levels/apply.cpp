@@ -1,14 +1,11 @@
 #include "preprocess/levels/apply.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
-#include <mutex>
 #include <optional>
 
 #include "common/dataset/morph.hpp"
-#include "preprocess/levels/parallel.hpp"
+#include "preprocess/build/parallel.hpp"
 #include "preprocess/levels/remake.hpp"
 
 namespace iwalk {
@@ -83,7 +80,7 @@ std::vector<LevelApplier::Job> LevelApplier::planJobs() {
 
 // The stage's pages before `end`, and their morph blocks to disk.
 Result<void> LevelApplier::loadUpTo(std::uint32_t end) {
-    const std::uint32_t step = 8 * static_cast<std::uint32_t>(tools_.arena.max_concurrency());
+    const std::uint32_t step = 32 * static_cast<std::uint32_t>(tools_.arena.max_concurrency());
     for (;;) {
         const std::uint32_t begin = firstLoaded_ + static_cast<std::uint32_t>(loaded_.size());
         if (begin >= end) return {};
@@ -93,24 +90,25 @@ Result<void> LevelApplier::loadUpTo(std::uint32_t end) {
 
 Result<void> LevelApplier::load(std::uint32_t begin, std::uint32_t end) {
     loaded_.resize(end - firstLoaded_);
-    const auto at = [&](std::uint32_t index) -> Loaded& { return loaded_[index - firstLoaded_]; };
-    RETURN_IF_ERROR(parallelFor(tools_.arena, begin, end, [&](std::size_t i) -> Result<void> {
+    const auto at = [&](std::size_t index) -> Loaded& { return loaded_[index - firstLoaded_]; };
+    const auto read = [&](std::size_t i) -> Result<void> {
         const StagePage& page = stage_.pages[i];
         if (!isMorphNew(page) && !page.needed) return {};
-        ASSIGN_OR_RETURN(at(static_cast<std::uint32_t>(i)).page, tools_.store.get(page.number, page.record));
+        ASSIGN_OR_RETURN(at(i).page, tools_.store.get(page.number, page.record));
         return findTargets(static_cast<std::uint32_t>(i));
-    }));
-    for (std::uint32_t i = begin; i < end; ++i) {
-        if (at(i).page) RETURN_IF_ERROR(targets_.take(i, at(i).targets));
-    }
-    RETURN_IF_ERROR(parallelFor(tools_.arena, begin, end, [&](std::size_t i) -> Result<void> {
+    };
+    const auto take = [&](std::size_t i) -> Result<void> {
+        return at(i).page ? targets_.take(static_cast<std::uint32_t>(i), at(i).targets) : Result<void>();
+    };
+    RETURN_IF_ERROR(orderedFor(tools_.arena, begin, end, read, take));
+    const auto encode = [&](std::size_t i) -> Result<void> {
         if (isMorphNew(stage_.pages[i])) encodeMorph(static_cast<std::uint32_t>(i));
         return {};
-    }));
-    for (std::uint32_t i = begin; i < end; ++i) {
-        if (isMorphNew(stage_.pages[i])) RETURN_IF_ERROR(writeMorph(i));
-    }
-    return {};
+    };
+    const auto write = [&](std::size_t i) -> Result<void> {
+        return isMorphNew(stage_.pages[i]) ? writeMorph(static_cast<std::uint32_t>(i)) : Result<void>();
+    };
+    return orderedFor(tools_.arena, begin, end, encode, write);
 }
 
 // Where the page's vertices go as far as decisions do not say: they stay in cells that were decided, and go
@@ -173,11 +171,11 @@ void LevelApplier::encodeMorph(std::uint32_t index) {
 
 Result<void> LevelApplier::makeEntries(std::span<const Job> jobs) {
     std::vector<Slice> slices(jobs.size());
-    RETURN_IF_ERROR(parallelFor(tools_.arena, 0, jobs.size(), [&](std::size_t i) -> Result<void> {
+    const auto make = [&](std::size_t i) -> Result<void> {
         ASSIGN_OR_RETURN(slices[i], makeSlice(jobs[i]));
         return {};
-    }));
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
+    };
+    const auto add = [&](std::size_t i) -> Result<void> {
         LevelRecord entry{};
         entry.level = static_cast<std::uint8_t>(stage_.level);
         // A bound for what has vanished, too.
@@ -185,8 +183,9 @@ Result<void> LevelApplier::makeEntries(std::span<const Job> jobs) {
             entry.error = std::max(entry.error, source.entry.error);
         tools_.model.entries[jobs[i].node].push_back(entry);
         packer_.add(std::move(slices[i]));
-    }
-    return {};
+        return {};
+    };
+    return orderedFor(tools_.arena, 0, jobs.size(), make, add);
 }
 
 Result<Slice> LevelApplier::makeSlice(const Job& job) {

@@ -8,7 +8,7 @@
 #include "preprocess/levels/apply.hpp"
 #include "preprocess/levels/choose_cells.hpp"
 #include "preprocess/levels/opacities.hpp"
-#include "preprocess/levels/parallel.hpp"
+#include "preprocess/build/parallel.hpp"
 
 namespace iwalk {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "preprocess/levels/parallel.hpp"
+#include "preprocess/build/parallel.hpp"
 #include "preprocess/opacity/cell_opacity.hpp"
 
 namespace iwalk {
