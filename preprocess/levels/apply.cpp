@@ -80,7 +80,7 @@ std::vector<LevelApplier::Job> LevelApplier::planJobs() {
 
 // The stage's pages before `end`, and their morph blocks to disk.
 Result<void> LevelApplier::loadUpTo(std::uint32_t end) {
-    const std::uint32_t step = 32 * static_cast<std::uint32_t>(tools_.arena.max_concurrency());
+    const std::uint32_t step = 16 * static_cast<std::uint32_t>(tools_.arena.max_concurrency());
     for (;;) {
         const std::uint32_t begin = firstLoaded_ + static_cast<std::uint32_t>(loaded_.size());
         if (begin >= end) return {};

@@ -7,6 +7,11 @@
 namespace iwalk {
 namespace {
 
+// Of the triangles of a page that have only one corner in the cell, the same one, so many count. These stay,
+// as their other corners do, and are enough to keep that vertex where it is (Ring::kMostFan); all of them
+// might be the whole model.
+constexpr std::uint32_t kMostAround = 512;
+
 struct Wedge {
     std::uint32_t point, color, normal;
     bool operator==(const Wedge&) const = default;
@@ -72,16 +77,27 @@ class CellJob {
         std::vector<std::uint8_t> inside(page->positions.size());
         for (std::size_t v = 0; v < inside.size(); ++v)
             inside[v] = cell_.contains(page->positions[v]) ? 1 : 0;
+        std::vector<std::uint32_t> around(page->positions.size());
         for (const Range& range : page->ranges) {
             if (outside(*page, range)) continue;
             for (std::uint32_t i = range.firstIndex; i < range.firstIndex + range.indexCount; i += 3) {
                 const std::uint16_t* corner = &page->indices[i];
                 const int in = inside[corner[0]] + inside[corner[1]] + inside[corner[2]];
+                if (in == 1 && isTooMuch(around, corner, inside)) continue;
                 if (in > 0) addTriangle(gathered, corner, in == 3);
             }
         }
         gathered_.push_back(std::move(gathered));
         return {};
+    }
+
+    // Counts a triangle with a single corner in the cell.
+    static bool isTooMuch(std::vector<std::uint32_t>& around, const std::uint16_t* corner,
+                          const std::vector<std::uint8_t>& inside) {
+        const std::uint16_t vertex = inside[corner[0]]   ? corner[0]
+                                     : inside[corner[1]] ? corner[1]
+                                                         : corner[2];
+        return ++around[vertex] > kMostAround;
     }
 
     void addTriangle(Gathered& from, const std::uint16_t* corner, bool whole) {

@@ -62,6 +62,9 @@ class Maker {
 
     Slice run(unsigned leastLevels) {
         const std::vector<SourceRange> ranges = sortedRanges(sources_);
+        std::size_t most = 0;  // triangles
+        for (const SourceRange& range : ranges) most += range.range->indexCount / 3;
+        slice_.owned.reserve(most * format_.words());
         std::vector<RunSource> parts;
         for (const SourceRange& range : ranges) {
             const std::size_t before = slice_.count;

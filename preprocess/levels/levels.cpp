@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <mutex>
 
+#include "preprocess/build/parallel.hpp"
 #include "preprocess/levels/apply.hpp"
 #include "preprocess/levels/choose_cells.hpp"
 #include "preprocess/levels/opacities.hpp"
-#include "preprocess/build/parallel.hpp"
 
 namespace iwalk {
 namespace {
