@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "common/settings.hpp"
+#include "preprocess/build/distribute_queue.hpp"
 #include "preprocess/build/grid.hpp"
 
 namespace iwalk {
@@ -31,11 +32,12 @@ Result<Budget> makeBudget(const BuildOptions& options) {
     Budget budget;
     const std::uint64_t spillBytes = std::clamp<std::uint64_t>(work / 8, 4 * kMiB, 40 * kMiB);
     budget.chunkBytes = std::bit_floor(spillBytes / kGridBins);
-    budget.importerBytes = work - kGridBins * budget.chunkBytes - kSinkBytes;
     const unsigned wanted =
         options.threads != 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
     const std::uint64_t affordable = (work - kMinBatchBytes) / kThreadBytes;
     budget.threads = static_cast<unsigned>(std::clamp<std::uint64_t>(affordable, 1, wanted));
+    budget.importerBytes =
+        work - kGridBins * budget.chunkBytes - kSinkBytes - (batchesAtOnce(budget.threads) - 1) * kBatchBytes;
     budget.batchBytes = work - budget.threads * kThreadBytes;
     return budget;
 }

@@ -15,7 +15,7 @@ struct Budget {
     std::uint64_t importerBytes = 0;  // all importers together
     std::size_t chunkBytes = 0;       // of the spill file, one buffer for each bin
     std::uint64_t batchBytes = 0;     // triangles in memory at once, and what sorting them takes
-    unsigned threads = 1;             // that build pages
+    unsigned threads = 1;             // that read, and build pages
 };
 
 // Fails when the limit is too low.

@@ -12,12 +12,13 @@
 #include "common/dataset/level_summary.hpp"
 #include "common/settings.hpp"
 #include "preprocess/build/assemble.hpp"
-#include "preprocess/build/distribute.hpp"
+#include "preprocess/build/distribute_queue.hpp"
 #include "preprocess/build/grid.hpp"
 #include "preprocess/build/old_dataset.hpp"
 #include "preprocess/build/output_directory.hpp"
 #include "preprocess/build/page_order.hpp"
 #include "preprocess/build/pipeline.hpp"
+#include "preprocess/build/reading_threads.hpp"
 #include "preprocess/build/survey.hpp"
 #include "preprocess/levels/levels.hpp"
 
@@ -44,17 +45,18 @@ class Build {
           output_(output),
           progress_(progress),
           old_(old),
+          threads_(budget.threads),
           inputs_(options, budget, output.temporaryDirectory(), parts.openImporter) {
         if (old_ != nullptr) manifest_ = old_->manifest;
     }
 
     Result<Manifest> run() {
-        RETURN_IF_ERROR(scan());
+        RETURN_IF_ERROR(threads_.lead([&] { return scan(); }));
         const RecordFormat format(lattice_.rootCellLog2, manifest_.colors, manifest_.normals);
         const std::size_t chunkBytes = parts_.chunkBytes != 0 ? parts_.chunkBytes : budget_.chunkBytes;
         announceSpace(format.bytes());
         ASSIGN_OR_RETURN(ChunkFile spill, ChunkFile::create(output_.temporary("triangles"), chunkBytes));
-        ASSIGN_OR_RETURN(std::vector<Bin> bins, distribute(format, spill));
+        ASSIGN_OR_RETURN(std::vector<Bin> bins, threads_.lead([&] { return distribute(format, spill); }));
         progress_.triangles(manifest_.triangles);
         RETURN_IF_ERROR(assemble(format, std::move(spill), std::move(bins)));
         progress_.phase("committing");
@@ -122,7 +124,8 @@ class Build {
     Result<std::vector<Bin>> distribute(const RecordFormat& format, ChunkFile& spill) {
         progress_.phase("reading triangles");
         Distributor distributor(lattice_, middle_, format, manifest_.colors, manifest_.normals, spill, tree_);
-        const auto sink = [&](std::span<const Triangle> triangles) { return distributor.add(triangles); };
+        DistributeQueue queue(distributor, budget_.threads);
+        const auto sink = [&](std::vector<Triangle>& triangles) { return queue.add(triangles); };
         std::uint64_t stored = 0;
         for (std::size_t i = 0; i < options_.inputs.size(); ++i) {
             const auto done = [&](double inInput) {
@@ -130,7 +133,9 @@ class Build {
                                static_cast<double>(options_.inputs.size()));
             };
             distributor.begin(options_.inputs[i], summaries_[i]);
-            ASSIGN_OR_RETURN(const ImportCounts counts, inputs_.triangles(i, sink, done));
+            const Result<ImportCounts> read = inputs_.triangles(i, sink, done);
+            RETURN_IF_ERROR(queue.finish());  // what went wrong there came before what did in reading
+            ASSIGN_OR_RETURN(const ImportCounts counts, read);
             stored += distributor.stored();
             manifest_.provenance.push_back(
                 {std::filesystem::path(options_.inputs[i]).filename().string(), distributor.stored(),
@@ -240,6 +245,7 @@ class Build {
     OutputDirectory& output_;
     Progress& progress_;
     const OldDataset* old_;
+    ReadingThreads threads_;
     Inputs inputs_;
     std::vector<ImportSummary> summaries_;
     Lattice lattice_;

@@ -1,6 +1,7 @@
 #include "preprocess/build/distribute.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <glm/geometric.hpp>
 
 #include "common/dataset/page.hpp"
@@ -94,16 +95,56 @@ Result<void> Distributor::add(std::span<const Triangle> triangles) {
     return {};
 }
 
+void Distributor::pack(PackedTriangles& batch) const {
+    batch.bins.resize(batch.triangles.size());
+    batch.words.resize(batch.triangles.size() * format_.words());
+    std::uint32_t* words = batch.words.data();
+    TriangleRecord record;
+    for (std::size_t i = 0; i < batch.triangles.size(); ++i, words += format_.words()) {
+        const Triangle& triangle = batch.triangles[i];
+        const auto& [a, b, c] = record.positions;
+        if (!quantise(triangle, stepsPerUnit_, record)) {
+            batch.bins[i] = PackedTriangles::kSplit;
+        } else if (a == b || b == c || c == a) {
+            batch.bins[i] = PackedTriangles::kDegenerate;
+        } else {
+            setAttributes(triangle, record);
+            const TrianglePlace place = placeOf(a, b, c, lattice_.rootCellLog2);
+            batch.bins[i] = static_cast<std::uint16_t>(binOf(place, 0, lattice_.rootCellLog2));
+            format_.pack(record, words);
+        }
+    }
+}
+
+Result<void> Distributor::append(const PackedTriangles& batch) {
+    const std::uint32_t* words = batch.words.data();
+    for (std::size_t i = 0; i < batch.triangles.size(); ++i, words += format_.words()) {
+        if (batch.bins[i] == PackedTriangles::kDegenerate) {
+            ++degenerate_;
+        } else if (batch.bins[i] == PackedTriangles::kSplit) {
+            RETURN_IF_ERROR(keepPieces(batch.triangles[i]));
+        } else {
+            RETURN_IF_ERROR(storePacked(batch.bins[i], words));
+        }
+    }
+    return {};
+}
+
 Result<void> Distributor::keep(const Triangle& triangle, TriangleRecord& record) {
     setAttributes(triangle, record);
     const auto& [a, b, c] = record.positions;
     const TrianglePlace place = placeOf(a, b, c, lattice_.rootCellLog2);
     RETURN_IF_ERROR(store(record, place));
-    LatticeBox box;
-    for (const CellPoint& corner : record.positions) box.add(lattice_.fromCell(corner));
-    old_.touch(place, box);
+    touch(place, record.positions);
     ++stored_;
     return {};
+}
+
+void Distributor::touch(const TrianglePlace& place, const std::array<CellPoint, 3>& positions) {
+    if (!old_.exists()) return;
+    LatticeBox box;
+    for (const CellPoint& corner : positions) box.add(lattice_.fromCell(corner));
+    old_.touch(place, box);
 }
 
 Result<void> Distributor::keepPieces(const Triangle& triangle) {
@@ -132,6 +173,17 @@ Result<void> Distributor::keepPieces(const Triangle& triangle) {
 Result<void> Distributor::store(const TriangleRecord& record, const TrianglePlace& place) {
     ASSIGN_OR_RETURN(std::uint32_t* const words, writer_.append(binOf(place, 0, lattice_.rootCellLog2)));
     format_.pack(record, words);
+    return {};
+}
+
+Result<void> Distributor::storePacked(std::size_t bin, const std::uint32_t* words) {
+    ASSIGN_OR_RETURN(std::uint32_t* const room, writer_.append(bin));
+    std::memcpy(room, words, format_.bytes());
+    ++stored_;
+    if (old_.exists()) {
+        touch(format_.place(words),
+              {format_.position(words, 0), format_.position(words, 1), format_.position(words, 2)});
+    }
     return {};
 }
 

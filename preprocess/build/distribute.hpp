@@ -11,6 +11,15 @@
 
 namespace iwalk {
 
+// A batch of triangles on its way into the bins.
+struct PackedTriangles {
+    std::vector<Triangle> triangles;
+    // Made by Distributor::pack(): the bin of each, or what it is instead; and its words where it has a bin.
+    static constexpr std::uint16_t kDegenerate = 0xffff, kSplit = 0xfffe;
+    std::vector<std::uint16_t> bins;
+    std::vector<std::uint32_t> words;
+};
+
 // Puts the triangles of the inputs on the lattice and into the bins of the topmost grid.
 class Distributor {
   public:
@@ -23,6 +32,10 @@ class Distributor {
     // Triangles that are too long for the lattice are split. Fails when one does not fit it, or the disk is
     // full.
     Result<void> add(std::span<const Triangle> triangles);
+    // The same in two steps: the first for several batches at once, by any threads; the second for one after
+    // the other.
+    void pack(PackedTriangles& batch) const;
+    Result<void> append(const PackedTriangles& batch);
     // A triangle that the dataset has had before.
     Result<void> addOld(const TriangleRecord& record);
     // Of the input that began last: stored triangles, and those with fewer than three distinct lattice
@@ -38,6 +51,8 @@ class Distributor {
     bool quantise(const Triangle& triangle, double stepsPerUnit, TriangleRecord& record) const;
     Result<void> keep(const Triangle& triangle, TriangleRecord& record);
     Result<void> keepPieces(const Triangle& triangle);
+    Result<void> storePacked(std::size_t bin, const std::uint32_t* words);
+    void touch(const TrianglePlace& place, const std::array<CellPoint, 3>& positions);
     Result<void> store(const TriangleRecord& record, const TrianglePlace& place);
     Error misfit(const Triangle& triangle) const;
     void setAttributes(const Triangle& triangle, TriangleRecord& record) const;

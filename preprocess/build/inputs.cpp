@@ -61,7 +61,12 @@ Result<std::vector<std::string>> findInputs(const std::vector<std::string>& name
 Inputs::Inputs(const BuildOptions& options, const Budget& budget, const std::string& spillDirectory,
                ImporterFactory factory)
     : turn_(options.import.yUp),
-      files_(options.inputs, {budget.importerBytes, spillDirectory, options.import}, std::move(factory)) {}
+      files_(options.inputs,
+             {.memoryBytes = budget.importerBytes,
+              .spillDirectory = spillDirectory,
+              .choices = options.import,
+              .threads = budget.threads},
+             std::move(factory)) {}
 
 Result<std::vector<ImportSummary>> Inputs::scan(const VertexSink& vertices, const ProgressSink& progress) {
     const Placement turn = yUpToZUp();

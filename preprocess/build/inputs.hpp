@@ -14,7 +14,8 @@ namespace iwalk {
 // there is none.
 Result<std::vector<std::string>> findInputs(const std::vector<std::string>& names);
 
-// All inputs of a build as one: each is scanned, then each is streamed; turned so that z is up.
+// All inputs of a build as one: each is scanned, then each is streamed; turned so that z is up. To be used by
+// the one that leads the reading threads.
 class Inputs {
   public:
     Inputs(const BuildOptions& options, const Budget& budget, const std::string& spillDirectory,

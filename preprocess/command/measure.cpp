@@ -5,6 +5,7 @@
 
 #include "preprocess/build/budget.hpp"
 #include "preprocess/build/inputs.hpp"
+#include "preprocess/build/reading_threads.hpp"
 #include "preprocess/command/commands.hpp"
 
 namespace iwalk {
@@ -41,12 +42,13 @@ Result<void> runMeasure(const BuildOptions& options, bool json) {
     BuildOptions one = options;
     ASSIGN_OR_RETURN(const std::vector<std::string> inputs, findInputs(options.inputs));
     ASSIGN_OR_RETURN(const Budget budget, makeBudget(options));
+    ReadingThreads threads(budget.threads);
     const char* const temporary = std::getenv("TMPDIR");
     ordered_json all = ordered_json::array();
     for (const std::string& input : inputs) {
         one.inputs = {input};
         Inputs file(one, budget, temporary != nullptr ? temporary : "/tmp", openImporter);
-        ASSIGN_OR_RETURN(const auto summaries, file.scan({}, {}));
+        ASSIGN_OR_RETURN(const auto summaries, threads.lead([&] { return file.scan({}, {}); }));
         json ? all.push_back(toJson(input, summaries[0])) : print(input, summaries[0]);
     }
     if (json) fmt::print("{}\n", all.dump(1));

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/geometry.hpp"
 #include "common/result.hpp"
@@ -46,7 +47,8 @@ struct ImportCounts {
     std::uint64_t droppedNonFinite = 0;  // had a corner whose position is NaN or infinite
 };
 
-using TriangleSink = std::function<Result<void>(std::span<const Triangle>)>;
+// May take the triangles and leave any other vector in their place.
+using TriangleSink = std::function<Result<void>(std::vector<Triangle>&)>;
 using VertexSink = std::function<void(std::span<const glm::dvec3>)>;
 // Called now and then with the part done of the pass under way, 0..1.
 using ProgressSink = std::function<void(double)>;
@@ -80,6 +82,11 @@ struct ImportLimits {
     std::uint64_t memoryBytes = 0;  // for one importer, buffers and kept vertices included; at least 16 MiB
     std::string spillDirectory;     // exists; what the importer makes there is gone when it is, or is killed
     ImportChoices choices{};
+    // Threads that may take part: with more than one those of the TBB arena that scan() and triangles() are
+    // called in. What is handed out, and when, is the same; sinks are called by the calling thread.
+    unsigned threads = 1;
+    // Text is parsed in blocks of about so many bytes, up to 1 MiB. Larger: fewer hand-overs, more memory.
+    std::size_t blockBytes = std::size_t{64} << 10;
     // How many assemblies the file is part of, and how often they place it in all.
     unsigned nesting = 0;
     std::uint64_t copies = 1;

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "preprocess/import/line_reader.hpp"
 #include "preprocess/import/memory_share.hpp"
 #include "preprocess/import/mtl.hpp"
-#include "preprocess/import/obj_line.hpp"
+#include "preprocess/import/obj_blocks.hpp"
 #include "preprocess/import/progress_meter.hpp"
-#include "preprocess/import/text.hpp"
+#include "preprocess/import/read_ahead.hpp"
 #include "preprocess/import/triangle_output.hpp"
 #include "preprocess/import/vertex_store.hpp"
 
@@ -23,9 +21,11 @@ class ObjImporter : public Importer {
     ObjImporter(const std::string& path, std::unique_ptr<RandomAccessFile> file, const ImportLimits& limits)
         : path_(path),
           file_(std::move(file)),
-          vertices_({.doubles = true, .colors = true}, storeBytes(limits.memoryBytes) / 3 * 2,
+          blocks_(blocksAtOnce(limits)),
+          blockBytes_(limits.blockBytes),
+          vertices_({.doubles = true, .colors = true}, storeBytes(limits, true) / 3 * 2,
                     limits.spillDirectory),
-          normals_(sizeof(glm::vec3), storeBytes(limits.memoryBytes) / 3, limits.spillDirectory) {}
+          normals_(sizeof(glm::vec3), storeBytes(limits, true) / 3, limits.spillDirectory) {}
 
     Result<ImportSummary> scan(const VertexSink& vertices, const ProgressSink& progress) override;
     Result<ImportCounts> triangles(const TriangleSink& sink, const ProgressSink& progress) override;
@@ -33,49 +33,63 @@ class ObjImporter : public Importer {
   private:
     // What the second pass has come past.
     struct FacePass {
-        std::uint64_t vertices = 0, normals = 0, faces = 0;
+        std::uint64_t vertices = 0, normals = 0, faces = 0, lines = 0;
         std::uint32_t materialColor = Materials::kGrey;
     };
 
-    Result<void> scanLine(const ObjLine& line, const LineReader& lines);
-    Result<void> scanVertex(std::string_view rest, const LineReader& lines);
-    Result<void> scanNormal(std::string_view rest, const LineReader& lines);
-    Result<void> keepBatch(const VertexSink& sink);
-    Result<void> readLine(const ObjLine& line, const LineReader& lines, FacePass& pass,
-                          TriangleOutput& output);
-    Result<void> readFace(std::string_view rest, const LineReader& lines, const FacePass& pass,
-                          TriangleOutput& output);
-    Result<Corner> cornerAt(const ObjCorner& written, const LineReader& lines, const FacePass& pass);
+    // Reads the file block by block, and calls take(Block&) with each of them in order.
+    template <class Block, class Take>
+    Result<void> eachBlock(const ProgressSink& progress, const Take& take);
+    Result<void> keepVertices(const ObjVertexBlock& block, const VertexSink& sink);
+    Result<void> keepNormals(const ObjVertexBlock& block);
+    Result<void> readFaces(const ObjFaceBlock& block, FacePass& pass, TriangleOutput& output);
+    Result<Corner> cornerAt(const ObjCorner& written, const ObjFaceBlock::Face& face, const FacePass& pass);
+    Error badFace(const ObjFaceBlock::Face& face, const FacePass& pass, std::string_view what) const;
     Result<void> readNormal(std::uint64_t index, glm::vec3& normal);
     bool colored() const { return vertexColors_ || materials_.anyColor(); }
 
     const std::string path_;
     const std::unique_ptr<RandomAccessFile> file_;
-    VertexStore vertices_;  // alpha 0: without a colour of its own
-    RecordStore normals_;   // of unit length or 0
+    const std::size_t blocks_, blockBytes_;  // at once; of each
+    VertexStore vertices_;                   // alpha 0: without a colour of its own
+    RecordStore normals_;                    // of unit length or 0
     Materials materials_;
     VertexBatch batch_;
     bool vertexColors_ = false;
-    std::uint64_t triangleBound_ = 0;
 };
 
-Result<ImportSummary> ObjImporter::scan(const VertexSink& vertices, const ProgressSink& progress) {
-    LineReader lines(*file_, path_);
+template <class Block, class Take>
+Result<void> ObjImporter::eachBlock(const ProgressSink& progress, const Take& take) {
+    LineBlocks file(*file_, blockBytes_);
+    ReadAhead<Block> reading(
+        blocks_, [&](Block& block) { return file.next(block.lines); }, [](Block& block) { block.parse(); });
     ProgressMeter meter(progress, 0, file_->size());
-    for (std::string_view line;;) {
-        ASSIGN_OR_RETURN(const bool more, lines.next(line));
-        if (!more) break;
-        RETURN_IF_ERROR(scanLine(splitObjLine(line), lines));
-        if (batch_.rows == VertexBatch::kRows) RETURN_IF_ERROR(keepBatch(vertices));
-        meter.at(lines.offset());
+    while (true) {
+        ASSIGN_OR_RETURN(Block* const block, reading.next());
+        if (!block) break;
+        RETURN_IF_ERROR(take(*block));
+        meter.at(block->lines.bytes.end());
     }
-    RETURN_IF_ERROR(keepBatch(vertices));
-    if (vertices_.size() == 0) return fail("{}: has no vertices ('v' lines): not an OBJ model?", path_);
     meter.done();
+    return {};
+}
 
+Result<ImportSummary> ObjImporter::scan(const VertexSink& vertices, const ProgressSink& progress) {
     ImportSummary summary;
+    std::uint64_t lines = 0;
+    const auto take = [&](const ObjVertexBlock& block) -> Result<void> {
+        RETURN_IF_ERROR(keepVertices(block, vertices));
+        RETURN_IF_ERROR(keepNormals(block));
+        for (const std::string& library : block.libraries) materials_.load(path_, library);
+        summary.triangleBound += block.triangleBound;
+        if (block.lines.bad) return block.lines.bad->error(path_, lines);
+        lines += block.lineCount;
+        return {};
+    };
+    RETURN_IF_ERROR(eachBlock<ObjVertexBlock>(progress, take));
+    if (vertices_.size() == 0) return fail("{}: has no vertices ('v' lines): not an OBJ model?", path_);
+
     summary.vertices = vertices_.finite();
-    summary.triangleBound = triangleBound_;
     summary.bounds = vertices_.bounds();
     summary.precision = textPrecision(summary.bounds);
     summary.colors = colored();
@@ -83,116 +97,83 @@ Result<ImportSummary> ObjImporter::scan(const VertexSink& vertices, const Progre
     return summary;
 }
 
-Result<void> ObjImporter::scanLine(const ObjLine& line, const LineReader& lines) {
-    switch (line.keyword) {
-        case ObjKeyword::vertex:
-            return scanVertex(line.rest, lines);
-        case ObjKeyword::normal:
-            return scanNormal(line.rest, lines);
-        case ObjKeyword::materialLibrary:
-            materials_.load(path_, line.rest);
-            break;
-        case ObjKeyword::face: {
-            std::string_view rest = line.rest;
-            std::uint64_t corners = 0;
-            while (!takeWord(rest).empty()) ++corners;
-            triangleBound_ += corners > 2 ? corners - 2 : 0;
-            break;
+Result<void> ObjImporter::keepVertices(const ObjVertexBlock& block, const VertexSink& sink) {
+    for (std::size_t begin = 0; begin < block.vertices.size(); begin += VertexBatch::kRows) {
+        batch_.rows = std::min(block.vertices.size() - begin, VertexBatch::kRows);
+        for (std::size_t row = 0; row < batch_.rows; ++row) {
+            const ObjVertexBlock::Vertex& vertex = block.vertices[begin + row];
+            for (std::size_t i = 0; i < 3; ++i) {
+                batch_.columns[kX + i][row] = vertex.numbers[i];
+                batch_.columns[kRed + i][row] = vertex.numbers[3 + i] * 255;
+            }
+            batch_.columns[kAlpha][row] = vertex.colored ? 255 : 0;
+            vertexColors_ |= vertex.colored;
         }
-        default:
-            break;
+        RETURN_IF_ERROR(vertices_.add(batch_, sink));
     }
     return {};
 }
 
-// x y z, x y z w (the weight is for curves), or x y z r g b.
-Result<void> ObjImporter::scanVertex(std::string_view rest, const LineReader& lines) {
-    std::array<double, 6> values{};
-    const std::size_t count = takeObjNumbers(rest, values.data(), values.size());
-    if (count < 3) return lines.bad(fmt::format("a vertex needs three numbers, not {}", quote(trim(rest))));
-    const std::size_t row = batch_.rows++;
-    for (std::size_t i = 0; i < 3; ++i) {
-        batch_.columns[kX + i][row] = values[i];
-        batch_.columns[kRed + i][row] = values[3 + i] * 255;
+Result<void> ObjImporter::keepNormals(const ObjVertexBlock& block) {
+    for (const glm::vec3& normal : block.normals) {
+        ASSIGN_OR_RETURN(std::byte* const record, normals_.append());
+        std::memcpy(record, &normal, sizeof normal);
     }
-    batch_.columns[kAlpha][row] = count == 6 ? 255 : 0;
-    vertexColors_ |= count == 6;
-    return {};
-}
-
-Result<void> ObjImporter::scanNormal(std::string_view rest, const LineReader& lines) {
-    glm::dvec3 written(0);
-    if (takeObjNumbers(rest, &written.x, 3) < 3) {
-        return lines.bad(fmt::format("a normal needs three numbers, not {}", quote(trim(rest))));
-    }
-    const glm::vec3 normal = unitOrZero(written);
-    ASSIGN_OR_RETURN(std::byte* const record, normals_.append());
-    std::memcpy(record, &normal, sizeof normal);
-    return {};
-}
-
-Result<void> ObjImporter::keepBatch(const VertexSink& sink) {
-    RETURN_IF_ERROR(vertices_.add(batch_, sink));
-    batch_.rows = 0;
     return {};
 }
 
 Result<ImportCounts> ObjImporter::triangles(const TriangleSink& sink, const ProgressSink& progress) {
-    LineReader lines(*file_, path_);
-    ProgressMeter meter(progress, 0, file_->size());
     TriangleOutput output(normals_.size() > 0, sink);
     FacePass pass;
-    for (std::string_view line;;) {
-        ASSIGN_OR_RETURN(const bool more, lines.next(line));
-        if (!more) break;
-        RETURN_IF_ERROR(readLine(splitObjLine(line), lines, pass, output));
-        meter.at(lines.offset());
-    }
+    const auto take = [&](ObjFaceBlock& block) -> Result<void> {
+        RETURN_IF_ERROR(readFaces(block, pass, output));
+        while (block.parseMore()) RETURN_IF_ERROR(readFaces(block, pass, output));
+        pass.lines += block.lineCount();
+        return {};
+    };
+    RETURN_IF_ERROR(eachBlock<ObjFaceBlock>(progress, take));
     RETURN_IF_ERROR(output.flush());
-    meter.done();
     return output.counts();
 }
 
-Result<void> ObjImporter::readLine(const ObjLine& line, const LineReader& lines, FacePass& pass,
-                                   TriangleOutput& output) {
-    switch (line.keyword) {
-        case ObjKeyword::vertex:
-            ++pass.vertices;
-            break;
-        case ObjKeyword::normal:
-            ++pass.normals;
-            break;
-        case ObjKeyword::useMaterial:
-            pass.materialColor = materials_.color(trim(line.rest));
-            break;
-        case ObjKeyword::face:
+Result<void> ObjImporter::readFaces(const ObjFaceBlock& block, FacePass& pass, TriangleOutput& output) {
+    auto material = block.materials.begin();
+    const auto takeMaterials = [&](std::size_t face) {
+        for (; material != block.materials.end() && material->face == face; ++material)
+            pass.materialColor = materials_.color(material->name);
+    };
+    const ObjCorner* written = block.corners.data();
+    for (std::size_t i = 0; i < block.faces.size(); ++i) {
+        takeMaterials(i);
+        const ObjFaceBlock::Face& face = block.faces[i];
+        if (!face.goesOn) {
+            output.begin();
             ++pass.faces;
-            return readFace(line.rest, lines, pass, output);
-        default:
-            break;
+        }
+        for (const ObjCorner* const end = written + face.corners; written != end; ++written) {
+            ASSIGN_OR_RETURN(const Corner corner, cornerAt(*written, face, pass));
+            RETURN_IF_ERROR(output.corner(corner));
+        }
     }
+    takeMaterials(block.faces.size());
+    if (block.lines.bad) return block.lines.bad->error(path_, pass.lines);
+    if (!block.badCorner.empty()) {
+        return badFace(block.faces.back(), pass,
+                       fmt::format("{} is no corner: v, v/vt, v//vn or v/vt/vn is wanted", block.badCorner));
+    }
+    pass.vertices += block.vertices;
+    pass.normals += block.normals;
     return {};
 }
 
-Result<void> ObjImporter::readFace(std::string_view rest, const LineReader& lines, const FacePass& pass,
-                                   TriangleOutput& output) {
-    output.begin();
-    for (ObjCorner written; takeObjCorner(rest, written);) {
-        ASSIGN_OR_RETURN(const Corner corner, cornerAt(written, lines, pass));
-        RETURN_IF_ERROR(output.corner(corner));
-    }
-    if (rest.empty()) return {};
-    return lines.bad(fmt::format("face {}: {} is no corner: v, v/vt, v//vn or v/vt/vn is wanted", pass.faces,
-                                 quote(takeWord(rest))));
-}
-
-Result<Corner> ObjImporter::cornerAt(const ObjCorner& written, const LineReader& lines,
+Result<Corner> ObjImporter::cornerAt(const ObjCorner& written, const ObjFaceBlock::Face& face,
                                      const FacePass& pass) {
-    const std::uint64_t vertex = resolveObjIndex(written.vertex, pass.vertices, vertices_.size());
+    const std::uint64_t verticesBefore = pass.vertices + face.vertices;
+    const std::uint64_t vertex = resolveObjIndex(written.vertex, verticesBefore, vertices_.size());
     if (vertex >= vertices_.size()) {
-        return lines.bad(
-            fmt::format("face {}: vertex index {}, but there are {} vertices, {} of them up to here",
-                        pass.faces, written.vertex, vertices_.size(), pass.vertices));
+        return badFace(face, pass,
+                       fmt::format("vertex index {}, but there are {} vertices, {} of them up to here",
+                                   written.vertex, vertices_.size(), verticesBefore));
     }
     Corner corner;
     RETURN_IF_ERROR(vertices_.get(vertex, corner));
@@ -200,14 +181,20 @@ Result<Corner> ObjImporter::cornerAt(const ObjCorner& written, const LineReader&
     if (!ownColor && colored()) corner.color = pass.materialColor;
     if (written.normal == 0) return corner;
 
-    const std::uint64_t normal = resolveObjIndex(written.normal, pass.normals, normals_.size());
+    const std::uint64_t normalsBefore = pass.normals + face.normals;
+    const std::uint64_t normal = resolveObjIndex(written.normal, normalsBefore, normals_.size());
     if (normal >= normals_.size()) {
-        return lines.bad(
-            fmt::format("face {}: normal index {}, but there are {} normals, {} of them up to here",
-                        pass.faces, written.normal, normals_.size(), pass.normals));
+        return badFace(face, pass,
+                       fmt::format("normal index {}, but there are {} normals, {} of them up to here",
+                                   written.normal, normals_.size(), normalsBefore));
     }
     RETURN_IF_ERROR(readNormal(normal, corner.normal));
     return corner;
+}
+
+Error ObjImporter::badFace(const ObjFaceBlock::Face& face, const FacePass& pass,
+                           std::string_view what) const {
+    return BadLine{face.line, fmt::format("face {}: {}", pass.faces, what)}.error(path_, pass.lines);
 }
 
 Result<void> ObjImporter::readNormal(std::uint64_t index, glm::vec3& normal) {

@@ -19,7 +19,7 @@ class FaceReader {
     // `face` on, and returns how many.
     template <bool swap>
     Result<std::uint64_t> readPlain(std::uint64_t face) {
-        ByteStream& stream = values_.stream();
+        ByteStream& stream = *values_.stream();
         RETURN_IF_ERROR(stream.fill(kPlainWindow));
         const std::string_view window = stream.view().substr(0, kPlainWindow);
         const char* at = window.data();
@@ -73,7 +73,7 @@ class FaceReader {
     Result<void> readPlainCorner(const char* at, Corner& corner) {
         const auto index = loadBytes<std::uint32_t, swap>(at);
         if (index < store_.size()) return store_.get(index, corner);
-        const ByteStream& stream = values_.stream();
+        const ByteStream& stream = *values_.stream();
         return badIndex(signedAsWritten(index),
                         stream.offset() + static_cast<std::uint64_t>(at - stream.view().data()));
     }
@@ -141,7 +141,7 @@ Result<void> readPlyFaces(const PlyElement& element, PlyFormat format, PlyValues
                           ProgressMeter& progress) {
     ASSIGN_OR_RETURN(const std::size_t indices, findPlyIndices(element, path));
     FaceReader reader(element, indices, values, store, output);
-    const bool plain = format != PlyFormat::ascii && isPlain(element);
+    const bool plain = values.stream() && isPlain(element);
     for (std::uint64_t face = 0; face < element.count;) {
         if (plain) {
             ASSIGN_OR_RETURN(const std::uint64_t done, format == PlyFormat::bigEndian
@@ -151,7 +151,7 @@ Result<void> readPlyFaces(const PlyElement& element, PlyFormat format, PlyValues
         } else {
             RETURN_IF_ERROR(reader.readRecord(face++));
         }
-        progress.at(values.stream().offset());
+        progress.at(values.offset());
     }
     return {};
 }

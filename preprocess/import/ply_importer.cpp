@@ -20,9 +20,8 @@ class PlyImporter : public Importer {
           file_(std::move(file)),
           header_(std::move(header)),
           plan_(std::move(plan)),
-          store_(plan_.format, storeBytes(limits.memoryBytes), limits.spillDirectory),
-          stream_(*file_, header_.bytes),
-          values_(makePlyValues(header_.format, stream_, path_)) {}
+          store_(plan_.format, storeBytes(limits, header_.format == PlyFormat::ascii), limits.spillDirectory),
+          values_(makePlyValues(header_.format, *file_, header_.bytes, path_, limits)) {}
 
     Result<ImportSummary> scan(const VertexSink& vertices, const ProgressSink& progress) override;
     Result<ImportCounts> triangles(const TriangleSink& sink, const ProgressSink& progress) override;
@@ -38,16 +37,15 @@ class PlyImporter : public Importer {
     const PlyHeader header_;
     const PlyVertexPlan plan_;
     VertexStore store_;
-    ByteStream stream_;
     const std::unique_ptr<PlyValues> values_;
-    std::size_t element_ = 0;  // the one that stream_ stands at the beginning of
+    std::size_t element_ = 0;  // the one that values_ stands at the beginning of
 };
 
 Result<void> PlyImporter::skipElement(const PlyElement& element) {
     if (element.properties.empty()) return {};
     if (header_.format != PlyFormat::ascii && !element.hasLists()) {
         // Checked to lie within the file, with checkPlyCounts().
-        stream_.seek(stream_.offset() + element.count * element.leastBytes(header_.format));
+        values_->seek(values_->offset() + element.count * element.leastBytes(header_.format));
         return {};
     }
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -63,7 +61,7 @@ Result<void> PlyImporter::skipTo(std::string_view name) {
     const PlyElement* const wanted = header_.find(name);
     const auto index = static_cast<std::size_t>(wanted - header_.elements.data());
     if (index < element_) {
-        stream_.seek(header_.bytes);
+        values_->seek(header_.bytes);
         element_ = 0;
     }
     for (; element_ < index; ++element_) RETURN_IF_ERROR(skipElement(header_.elements[element_]));
@@ -74,10 +72,11 @@ Result<ImportSummary> PlyImporter::scan(const VertexSink& vertices, const Progre
     RETURN_IF_ERROR(skipTo("vertex"));
     const PlyElement& element = header_.elements[element_];
     const bool fixed = header_.format != PlyFormat::ascii && !element.hasLists();
-    const std::uint64_t end = stream_.offset() + element.count * element.leastBytes(header_.format);
-    ProgressMeter meter(progress, stream_.offset(), fixed ? end : file_->size());
+    const std::uint64_t end = values_->offset() + element.count * element.leastBytes(header_.format);
+    ProgressMeter meter(progress, values_->offset(), fixed ? end : file_->size());
     RETURN_IF_ERROR(readPlyVertices(element, header_.format, plan_, *values_, store_, vertices, meter));
     ++element_;
+    values_->pause();
     meter.done();
 
     ImportSummary summary;
@@ -97,7 +96,7 @@ std::uint64_t PlyImporter::triangleBound() const {
     const PlyElement* const face = header_.find("face");
     if (!face || face->count == 0 || header_.format == PlyFormat::ascii) return 0;
     const bool before = face < header_.elements.data() + element_;
-    const std::uint64_t bytes = before ? file_->size() - header_.bytes : stream_.rest();
+    const std::uint64_t bytes = before ? file_->size() - header_.bytes : values_->rest();
     std::size_t indexBytes = 1;
     for (const PlyProperty& p : face->properties) {
         if (isPlyIndices(p)) indexBytes = plyTypeBytes(p.type);
@@ -110,19 +109,20 @@ Result<ImportCounts> PlyImporter::triangles(const TriangleSink& sink, const Prog
     if (!face || face->count == 0) return ImportCounts{};
     RETURN_IF_ERROR(skipTo("face"));
     TriangleOutput output(plan_.format.normals, sink);
-    ProgressMeter meter(progress, stream_.offset(), file_->size());
+    ProgressMeter meter(progress, values_->offset(), file_->size());
     RETURN_IF_ERROR(
         readPlyFaces(header_.elements[element_], header_.format, *values_, path_, store_, output, meter));
     RETURN_IF_ERROR(output.flush());
     ++element_;
     warnAboutEnd();
+    values_->pause();
     meter.done();
     return output.counts();
 }
 
 // A text cut inside its last number looks like a whole one.
 void PlyImporter::warnAboutEnd() const {
-    if (header_.format == PlyFormat::ascii && stream_.rest() == 0 && element_ == header_.elements.size()) {
+    if (header_.format == PlyFormat::ascii && values_->rest() == 0 && element_ == header_.elements.size()) {
         spdlog::warn("{}: the last line has no end: the file may be cut short", path_);
     }
 }

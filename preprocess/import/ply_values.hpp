@@ -4,6 +4,7 @@
 #include <string>
 
 #include "preprocess/import/byte_stream.hpp"
+#include "preprocess/import/importer.hpp"
 #include "preprocess/import/ply_header.hpp"
 
 namespace iwalk {
@@ -27,18 +28,23 @@ class PlyValues {
     // What the values belong to from now on, for messages. `element` must outlive its use.
     void record(const PlyElement& element, std::uint64_t index) { element_ = &element, index_ = index; }
     // "PATH: element 'face' 17: WHAT (byte N)", where N is the place of the value last read.
-    Error bad(std::string_view what) const { return bad(what, valueAt_); }
+    Error bad(std::string_view what) const { return bad(what, place()); }
     Error bad(std::string_view what, std::uint64_t offset) const;
 
-    std::uint64_t place() const { return valueAt_; }  // byte of the file
-    ByteStream& stream() { return stream_; }
+    virtual std::uint64_t place() const = 0;   // of the value last read, byte of the file
+    virtual std::uint64_t offset() const = 0;  // behind it
+    std::uint64_t rest() const { return file_.size() - offset(); }
+    virtual void seek(std::uint64_t offset) = 0;
+    // Lets go of what was read ahead: for a while nothing is wanted.
+    virtual void pause() {}
+    // Of a binary file, for who reads whole records; null of a text.
+    virtual ByteStream* stream() { return nullptr; }
 
   protected:
-    PlyValues(ByteStream& stream, const std::string& path) : stream_(stream), path_(path) {}
+    PlyValues(const RandomAccessFile& file, const std::string& path) : file_(file), path_(path) {}
     virtual std::uint64_t leastItemBytes(PlyType type) const = 0;
 
-    ByteStream& stream_;
-    std::uint64_t valueAt_ = 0;  // of the value last read
+    const RandomAccessFile& file_;
 
   private:
     const std::string& path_;
@@ -46,8 +52,9 @@ class PlyValues {
     std::uint64_t index_ = 0;
 };
 
-// `stream` and `path` must outlive it.
-std::unique_ptr<PlyValues> makePlyValues(PlyFormat format, ByteStream& stream, const std::string& path);
+// From byte `offset` of `file` on, which must outlive it as `path` must.
+std::unique_ptr<PlyValues> makePlyValues(PlyFormat format, const RandomAccessFile& file, std::uint64_t offset,
+                                         const std::string& path, const ImportLimits& limits);
 
 // Value of `type` at `bytes`, which has the other byte order when `swap`.
 double loadPlyValue(PlyType type, bool swap, const char* bytes);

@@ -49,22 +49,23 @@ void loadColumns(const PlyElement& element, const PlyVertexPlan& plan, bool swap
 class VertexReader {
   public:
     VertexReader(const PlyElement& element, const PlyVertexPlan& plan, PlyValues& values)
-        : element_(element), plan_(plan), values_(values), stream_(values.stream()) {}
+        : element_(element), plan_(plan), values_(values) {}
 
     // A binary file without lists: records of one size.
     Result<void> readFixed(std::uint64_t first, std::uint64_t rows, bool swap) {
+        ByteStream& stream = *values_.stream();
         const auto stride = static_cast<std::size_t>(element_.leastBytes(PlyFormat::littleEndian));
         const std::uint64_t window =
             std::min<std::uint64_t>(VertexBatch::kRows, std::max<std::size_t>(kWindowBytes / stride, 1));
         batch_.rows = static_cast<std::size_t>(std::min(rows, window));
-        RETURN_IF_ERROR(stream_.fill(batch_.rows * stride));
-        if (stream_.view().size() < batch_.rows * stride) {
-            const std::size_t whole = stream_.view().size() / stride;
+        RETURN_IF_ERROR(stream.fill(batch_.rows * stride));
+        if (stream.view().size() < batch_.rows * stride) {
+            const std::size_t whole = stream.view().size() / stride;
             values_.record(element_, first + whole);
-            return values_.bad("the file ends, it is cut short", stream_.offset() + whole * stride);
+            return values_.bad("the file ends, it is cut short", stream.offset() + whole * stride);
         }
-        loadColumns(element_, plan_, swap, stream_.view().data(), stride, batch_);
-        stream_.advance(batch_.rows * stride);
+        loadColumns(element_, plan_, swap, stream.view().data(), stride, batch_);
+        stream.advance(batch_.rows * stride);
         return {};
     }
 
@@ -98,7 +99,6 @@ class VertexReader {
     const PlyElement& element_;
     const PlyVertexPlan& plan_;
     PlyValues& values_;
-    ByteStream& stream_;
     VertexBatch batch_;
 };
 
@@ -141,13 +141,13 @@ Result<void> readPlyVertices(const PlyElement& element, PlyFormat format, const 
                              ProgressMeter& progress) {
     // On the heap: a batch is 80 KiB.
     const auto reader = std::make_unique<VertexReader>(element, plan, values);
-    const bool fixed = format != PlyFormat::ascii && !element.hasLists();
+    const bool fixed = values.stream() && !element.hasLists();
     for (std::uint64_t done = 0; done < element.count; done += reader->batch().rows) {
         const std::uint64_t rows = element.count - done;
         RETURN_IF_ERROR(fixed ? reader->readFixed(done, rows, format == PlyFormat::bigEndian)
                               : reader->readValues(done, rows));
         RETURN_IF_ERROR(store.add(reader->batch(), sink));
-        progress.at(values.stream().offset());
+        progress.at(values.offset());
     }
     return {};
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "preprocess/import/byte_stream.hpp"
 #include "preprocess/import/line_reader.hpp"
 #include "preprocess/import/number.hpp"
 #include "preprocess/import/progress_meter.hpp"

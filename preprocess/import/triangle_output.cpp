@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "preprocess/import/vertex_output.hpp"
 #include "preprocess/import/vertex_store.hpp"
@@ -50,9 +51,10 @@ Result<void> TriangleOutput::add() {
 }
 
 Result<void> TriangleOutput::flush() {
-    const std::span<const Triangle> ready(batch_.data(), size_);
-    size_ = 0;
-    return sink_ && !ready.empty() ? sink_(ready) : Result<void>();
+    batch_.resize(std::exchange(size_, 0));
+    Result<void> taken = sink_ && !batch_.empty() ? sink_(batch_) : Result<void>();
+    batch_.resize(kBatch);
+    return taken;
 }
 
 }  // namespace iwalk

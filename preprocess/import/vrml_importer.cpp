@@ -14,7 +14,7 @@ namespace {
 class VrmlImporter : public Importer {
   public:
     VrmlImporter(std::string path, std::unique_ptr<RandomAccessFile> file, const ImportLimits& limits)
-        : path_(std::move(path)), file_(std::move(file)), memoryBytes_(storeBytes(limits.memoryBytes)) {}
+        : path_(std::move(path)), file_(std::move(file)), memoryBytes_(storeBytes(limits, false)) {}
 
     Result<ImportSummary> scan(const VertexSink& vertices, const ProgressSink& progress) override {
         VertexOutput output(vertices);

@@ -34,15 +34,15 @@ class MemoryFile : public RandomAccessFile {
     std::span<const std::byte> bytes_;
 };
 
-// Reads all there is, twice, and checks what an importer promises.
-inline void readAll(const Result<std::unique_ptr<Importer>>& opened) {
+// Reads all there is, twice, and checks what an importer promises. Returns what came of it.
+inline std::string readAll(const Result<std::unique_ptr<Importer>>& opened) {
     if (!opened) {
         CHECK(opened.error().message.find('\n') == std::string::npos);
-        return;
+        return opened.error().message;
     }
     Importer& importer = **opened;
     const auto summary = importer.scan([](std::span<const glm::dvec3>) {}, {});
-    if (!summary) return;
+    if (!summary) return summary.error().message;
     std::uint64_t triangles = 0;
     const auto counts = importer.triangles(
         [&](std::span<const Triangle> batch) {
@@ -57,15 +57,26 @@ inline void readAll(const Result<std::unique_ptr<Importer>>& opened) {
             return Result<void>();
         },
         {});
-    if (counts) {
-        CHECK_OP(counts->triangles, ==, triangles);
-        CHECK(summary->triangleBound == 0 || counts->triangles <= summary->triangleBound);
-    }
+    if (!counts) return counts.error().message;
+    CHECK_OP(counts->triangles, ==, triangles);
+    CHECK(summary->triangleBound == 0 || counts->triangles <= summary->triangleBound);
+    return fmt::format("{} vertices, {} triangles, {} dropped", summary->vertices, triangles,
+                       counts->droppedNonFinite);
 }
 
 // Where what does not fit in memory goes; the limits are the least there may be.
 inline ImportLimits fuzzLimits() {
     return {std::uint64_t{16} << 20, "/tmp"};
+}
+
+// Reads it as it is and, which must not make a difference, cut into blocks of a few bytes.
+template <class Open>
+void readInBlocks(const Open& open, std::size_t size) {
+    ImportLimits limits = fuzzLimits();
+    const std::string whole = readAll(open(limits));
+    limits.blockBytes = 1 + size % 61;
+    const std::string cut = readAll(open(limits));
+    CHECK_OP(cut, ==, whole);
 }
 
 }  // namespace iwalk

@@ -8,8 +8,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view all(reinterpret_cast<const char*>(data), size);
     const std::size_t end = std::min(all.find('\0'), size);
     if (end < size) directory.write("a.mtl", std::string(all.substr(end + 1)));
-    iwalk::readAll(iwalk::openObj(directory.path("fuzz.obj"), std::make_unique<iwalk::MemoryFile>(data, end),
-                                  iwalk::fuzzLimits()));
+    const auto open = [&](const iwalk::ImportLimits& limits) {
+        return iwalk::openObj(directory.path("fuzz.obj"), std::make_unique<iwalk::MemoryFile>(data, end),
+                              limits);
+    };
+    iwalk::readInBlocks(open, end);
     return 0;
 }
 

@@ -3,8 +3,10 @@
 #include "tests/import/ply_writer.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    iwalk::readAll(
-        iwalk::openPly("fuzz.ply", std::make_unique<iwalk::MemoryFile>(data, size), iwalk::fuzzLimits()));
+    const auto open = [&](const iwalk::ImportLimits& limits) {
+        return iwalk::openPly("fuzz.ply", std::make_unique<iwalk::MemoryFile>(data, size), limits);
+    };
+    iwalk::readInBlocks(open, size);
     return 0;
 }
 

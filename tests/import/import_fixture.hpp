@@ -23,12 +23,24 @@ inline bool operator==(const Corner& a, const Corner& b) {
     return a.position == b.position && a.color == b.color && a.normal == b.normal;
 }
 
+// But for progress.
+inline bool operator==(const Imported& a, const Imported& b) {
+    const ImportSummary &s = a.summary, &t = b.summary;
+    return a.triangles == b.triangles && a.vertices == b.vertices &&
+           a.counts.triangles == b.counts.triangles &&
+           a.counts.droppedNonFinite == b.counts.droppedNonFinite && s.vertices == t.vertices &&
+           s.triangleBound == t.triangleBound && s.bounds == t.bounds && s.precision == t.precision &&
+           s.colors == t.colors && s.normals == t.normals;
+}
+
 class ImportTest : public testing::Test {
   protected:
     Result<Imported> import(const std::string& name, std::uint64_t memoryBytes = std::uint64_t{16} << 20) {
+        return import(name, ImportLimits{memoryBytes, directory_.path("")});
+    }
+    Result<Imported> import(const std::string& name, const ImportLimits& limits) {
         Imported out;
-        ASSIGN_OR_RETURN(const auto importer,
-                         openImporter(directory_.path(name), {memoryBytes, directory_.path("")}));
+        ASSIGN_OR_RETURN(const auto importer, openImporter(directory_.path(name), limits));
         const ProgressSink progress = [&](double part) { out.progress.push_back(part); };
         const VertexSink vertices = [&](std::span<const glm::dvec3> batch) {
             out.vertices.insert(out.vertices.end(), batch.begin(), batch.end());

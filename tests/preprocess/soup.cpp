@@ -42,7 +42,9 @@ class FakeImporter : public Importer {
         const std::span<const Triangle> all(input_.triangles);
         for (std::size_t i = 0; i < all.size(); i += kBatch) {
             if (i >= input_.failAfter) return fail("fake.ply: byte 7: broken");
-            RETURN_IF_ERROR(sink(all.subspan(i, std::min(kBatch, all.size() - i))));
+            const auto some = all.subspan(i, std::min(kBatch, all.size() - i));
+            std::vector<Triangle> batch(some.begin(), some.end());
+            RETURN_IF_ERROR(sink(batch));
             progress(static_cast<double>(i) / static_cast<double>(all.size()));
         }
         return ImportCounts{all.size(), 0};
