@@ -14,9 +14,9 @@ namespace {
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 // The program itself, its libraries, the hierarchy as it grows, and what malloc keeps.
 constexpr std::uint64_t kBaseBytes = 20 * kMiB;
-// A thread that builds a page, at worst: corners, hash table, codecs' buffers, the pages that wait to be
-// written.
-constexpr std::uint64_t kThreadBytes = 7 * kMiB;
+// A thread that decides about a cell of levels, at worst: its mesh, what lies around each point, targets. One
+// that builds pages takes half as much.
+constexpr std::uint64_t kThreadBytes = 16 * kMiB;
 constexpr std::uint64_t kMinBatchBytes = 12 * kMiB;
 constexpr std::uint64_t kSinkBytes = 4 * kMiB;  // batches of triangles on their way
 
