@@ -1,7 +1,7 @@
 // The one file that calls MPI, from the drawing thread alone, on a communicator of its own. A blocking MPI
 // call spins and starves the other ranks of a box with fewer cores than ranks; so everything here is
-// non-blocking and polled, but what is done once when the wall starts, and what ranks of one host do without
-// MPI.
+// non-blocking and polled, but what is done once when the wall starts, and what ranks wait for in every
+// frame: that goes without MPI.
 
 #include <mpi.h>
 
@@ -15,6 +15,7 @@
 #include <span>
 #include <thread>
 
+#include "server/sync/host_links.hpp"
 #include "server/sync/host_meeting.hpp"
 #include "server/sync/start_watch.hpp"
 #include "server/sync/sync.hpp"
@@ -22,9 +23,10 @@
 namespace iwalk {
 namespace {
 
-constexpr int kTileTag = 1, kStopTag = 2, kVoteTag = 3, kHereTag = 4, kGoTag = 5;
-constexpr int kLongestPause = 1000, kMeetingPause = 200;  // us
-constexpr std::uint32_t kTileMagic = 0x4C545749;          // "IWTL"
+constexpr int kTileTag = 1, kStopTag = 2, kVoteTag = 3;
+constexpr int kLongestPause = 1000;  // us
+constexpr std::chrono::seconds kToLink{10}, kToBeEnded{2};
+constexpr std::uint32_t kTileMagic = 0x4C545749;  // "IWTL"
 constexpr std::uint64_t kMaxTileBytes = std::uint64_t{1} << 30;
 
 // Goes before a captured tile's bytes in one message.
@@ -44,6 +46,11 @@ void must(int code) {
     CHECK_OP(code, ==, MPI_SUCCESS);
 }
 
+[[noreturn]] void endAll() {
+    MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
+    std::_Exit(EXIT_FAILURE);
+}
+
 int byteCount(std::size_t bytes) {
     CHECK_OP(bytes, <=, kMaxTileBytes);
     return static_cast<int>(bytes);
@@ -52,15 +59,13 @@ int byteCount(std::size_t bytes) {
 // Sleeps that grow: short waits end quickly, long ones cost next to nothing.
 class Patience {
   public:
-    explicit Patience(int longest = kLongestPause) : longest_(longest) {}
     void wait() {
         std::this_thread::sleep_for(std::chrono::microseconds(pause_));
-        pause_ = std::min(longest_, pause_ + pause_ / 2);
+        pause_ = std::min(kLongestPause, pause_ + pause_ / 2);
     }
 
   private:
-    const int longest_;  // us
-    int pause_ = 20;
+    int pause_ = 20;  // us
 };
 
 class MpiSync : public Sync {
@@ -110,61 +115,54 @@ class MpiSync : public Sync {
         MPI_Request request = MPI_REQUEST_NULL;
     };
 
-    void finish(MPI_Request& request) { finish(&request, 1, kLongestPause); }
-    void finish(MPI_Request* requests, int count, int longestPause) {
-        Patience patience(longestPause);
-        for (int done = 0; must(MPI_Testall(count, requests, &done, MPI_STATUSES_IGNORE)), !done;) {
+    void finish(MPI_Request& request) {
+        Patience patience;
+        for (int done = 0; must(MPI_Test(&request, &done, MPI_STATUS_IGNORE)), !done;) {
             if (idleWork_) idleWork_();
             patience.wait();
         }
     }
     void meet(std::span<std::byte> bytes);
     void joinHost();
+    void linkHosts(const std::vector<int>& guests);
     void leaveHost();
     bool collectVotes();
     [[noreturn]] void nameMissing(const std::vector<MPI_Request>& votes);
+    template <class T>
+    void need(const Result<T>& done);
     void dropSent();
     void drain();
-    void takeStop();
 
     const int timeout_;  // s
     MPI_Comm world_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
     std::vector<std::string> hosts_;  // by rank
     std::vector<int> tiles_;          // likewise: how many it draws
-    std::vector<int> leaders_;        // of the hosts but rank 0's
     MPI_Win hostMemory_ = MPI_WIN_NULL;
     std::optional<HostMeeting> host_;
+    std::optional<HostLinks> links_;  // a host's leader's, when there is more than one host
     std::function<void()> idleWork_;
     std::list<Outgoing> outgoing_;          // a list: MPI reads the bytes where they are
     std::vector<protocol::TileImage> own_;  // rank 0's, which need no MPI
     bool stopAsked_ = false;
 };
 
-// All come, then rank 0's bytes go to all. On each host in the memory of its ranks; between hosts their
-// leaders tell rank 0 that they are here, and rank 0 tells them to go on: two steps, each of which waits for
-// somebody's next poll, where MPI_Ibarrier takes log2(hosts) of them.
+// All come, then rank 0's bytes go to all: on each host in the memory of its ranks, between hosts over TCP.
 void MpiSync::meet(std::span<std::byte> bytes) {
     if (!host_->leads()) return host_->follow(bytes, idleWork_);
     host_->gather(idleWork_);
-    const int count = static_cast<int>(bytes.size());
-    std::vector<MPI_Request> open;
-    const auto finishAll = [&] {
-        finish(open.data(), static_cast<int>(open.size()), kMeetingPause);
-        open.clear();
-    };
-    if (rank_ == 0) {
-        for (const int leader : leaders_)
-            must(MPI_Irecv(nullptr, 0, MPI_BYTE, leader, kHereTag, world_, &open.emplace_back()));
-        finishAll();
-        for (const int leader : leaders_)
-            must(MPI_Isend(bytes.data(), count, MPI_BYTE, leader, kGoTag, world_, &open.emplace_back()));
-    } else {
-        must(MPI_Isend(nullptr, 0, MPI_BYTE, 0, kHereTag, world_, &open.emplace_back()));
-        must(MPI_Irecv(bytes.data(), count, MPI_BYTE, 0, kGoTag, world_, &open.emplace_back()));
-    }
-    finishAll();
+    if (links_) need(rank_ == 0 ? links_->lead(bytes, idleWork_) : links_->follow(bytes, idleWork_));
     host_->release(bytes);
+}
+
+// mpirun ends all when a process dies, and says which; this rank does it only where none did.
+template <class T>
+void MpiSync::need(const Result<T>& done) {
+    if (done) return;
+    std::fprintf(stderr, "iwalk-server: rank %d on %s: %s\n", rank_,
+                 hosts_[static_cast<std::size_t>(rank_)].c_str(), done.error().message.c_str());
+    std::this_thread::sleep_for(kToBeEnded);
+    endAll();
 }
 
 double MpiSync::barrier() {
@@ -214,8 +212,7 @@ void MpiSync::nameMissing(const std::vector<MPI_Request>& votes) {
             missing += fmt::format("{}rank {} on {}", missing.empty() ? "" : ", ", i + 1, hosts_[i + 1]);
     }
     std::fprintf(stderr, "iwalk-server: not ready within %d s: %s\n", timeout_, missing.c_str());
-    MPI_Abort(world_, EXIT_FAILURE);
-    std::_Exit(EXIT_FAILURE);
+    endAll();
 }
 
 std::vector<std::string> MpiSync::gatherText(const std::string& mine) {
@@ -264,12 +261,28 @@ void MpiSync::joinHost() {
     MPI_Request request;  // what is prepared is used after this
     must(MPI_Iallgather(&mine, 1, MPI_INT, leads.data(), 1, MPI_INT, world_, &request));
     finish(request);
-    leaders_.clear();
+    std::vector<int> guests;
     for (int i = 1; i < size_; ++i)
-        if (leads[static_cast<std::size_t>(i)]) leaders_.push_back(i);
+        if (leads[static_cast<std::size_t>(i)]) guests.push_back(i);
+    if (!guests.empty()) linkHosts(guests);
+}
+
+// The hosts' leaders with rank 0.
+void MpiSync::linkHosts(const std::vector<int>& guests) {
+    std::string invitation;
+    if (host_->leads()) links_.emplace();
+    if (rank_ == 0) {
+        const Result<std::string> invited = links_->invite();
+        need(invited);
+        invitation = *invited;
+    }
+    invitation = gatherText(invitation).front();
+    if (rank_ == 0) need(links_->welcome(guests, kToLink));
+    if (rank_ != 0 && links_) need(links_->join(invitation, rank_, kToLink));
 }
 
 void MpiSync::leaveHost() {
+    links_.reset();
     host_.reset();
     must(MPI_Win_free(&hostMemory_));
 }
@@ -302,16 +315,11 @@ void MpiSync::askToStop() {
 }
 
 bool MpiSync::askedToStop() {
-    takeStop();
-    return stopAsked_;
-}
-
-void MpiSync::takeStop() {
     int waiting = 0;
     must(MPI_Iprobe(MPI_ANY_SOURCE, kStopTag, world_, &waiting, MPI_STATUS_IGNORE));
-    if (!waiting) return;
+    if (!waiting) return stopAsked_;
     must(MPI_Recv(nullptr, 0, MPI_BYTE, MPI_ANY_SOURCE, kStopTag, world_, MPI_STATUS_IGNORE));  // it is there
-    stopAsked_ = true;
+    return stopAsked_ = true;
 }
 
 void MpiSync::sendToRank0(protocol::TileImage tile) {
@@ -369,16 +377,11 @@ void MpiSync::dropSent() {
 // MPI must not be finalised with messages under way: each rank comes to a last barrier when its tiles are
 // gone, and rank 0 takes them in meanwhile.
 void MpiSync::drain() {
-    idleWork_ = {};
     for (Patience patience; dropSent(), !outgoing_.empty();) patience.wait();
     MPI_Request request;
     must(MPI_Ibarrier(world_, &request));
-    Patience patience;
-    for (int done = 0; must(MPI_Test(&request, &done, MPI_STATUS_IGNORE)), !done;) {
-        poll();
-        takeStop();
-        patience.wait();
-    }
+    idleWork_ = [this] { poll(), askedToStop(); };
+    finish(request);
 }
 
 }  // namespace

@@ -14,9 +14,8 @@
 namespace iwalk {
 
 // Keeps the ranks of a wall together. Collective calls are made by all ranks in the same order. Nothing in
-// here spins. In broadcast() and barrier() ranks of one host sleep until they are woken; every other wait is
-// polled with sleeps that grow from 20 us to 1 ms (0.2 ms between hosts in those two). What setIdleWork()
-// gave is done meanwhile.
+// here spins. In broadcast() and barrier() ranks sleep until they are woken; every other wait is polled with
+// sleeps that grow from 20 us to 1 ms. What setIdleWork() gave is done meanwhile.
 class Sync {
   public:
     static constexpr std::size_t kMaxText = 1023;
