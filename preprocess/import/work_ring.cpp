@@ -5,7 +5,7 @@ namespace iwalk {
 WorkRing::WorkRing(std::size_t slots, Work work, Work after)
     : work_(std::move(work)), after_(std::move(after)), states_(slots) {}
 
-WorkRing::~WorkRing() {
+WorkRing::~WorkRing() noexcept {
     for (std::atomic<int>& state : states_) {
         int expected = waiting;
         state.compare_exchange_strong(expected, idle);

@@ -20,7 +20,7 @@ class WorkRing {
     WorkRing(
         std::size_t slots, Work work, Work after = [](std::size_t) {});
     // Waits for what is being worked on; what nobody has begun with stays undone.
-    ~WorkRing();
+    ~WorkRing() noexcept;  // which a task_group's destructor is not
 
     std::size_t slots() const { return states_.size(); }
     // The slot is filled, and nobody's; slots are started in turn, 0 after the last.

@@ -1,6 +1,7 @@
 // Levels as built, judged by other means than they were made: open edges in cuts, and sampled distances.
 #include <gtest/gtest.h>
 
+#include "preprocess/build/verify.hpp"
 #include "tests/common/temp_directory.hpp"
 #include "tests/preprocess/levels_models.hpp"
 #include "tests/tools/levels/cracks.hpp"
@@ -32,8 +33,8 @@ class LevelJudgeTest : public testing::Test {
     }
 
     // The largest distance between a level and the input, as a part of what is stated.
-    static double worst(const DatasetPages& pages) {
-        const auto measured = levels::measureErrors(pages, {.samples = 4000, .seed = 1});
+    static double worst(const DatasetPages& pages, unsigned samples = 4000) {
+        const auto measured = levels::measureErrors(pages, {.samples = samples, .seed = 1});
         EXPECT_TRUE(measured.ok()) << measured.error().message;
         EXPECT_EQ(measured->size(), pages.manifest().levels.size());
         return levels::largestRatio(*measured);
@@ -69,6 +70,15 @@ TEST_F(LevelJudgeTest, APlantIsAsFarAsStated) {
 
 TEST_F(LevelJudgeTest, ASoupIsAsFarAsStated) {
     EXPECT_LE(worst(build(makeSoup(20'000, 1e-3, 0.3, 4, true), 1000)), 1.0);
+}
+
+// More triangles around a vertex than a cell looks at.
+TEST_F(LevelJudgeTest, ACrowdAroundAVertexIsAsFarAsStated) {
+    const DatasetPages pages = build(fan(100'000), 1000);
+    ASSERT_GE(pages.manifest().levels.size(), 2u);
+    EXPECT_LE(worst(pages, 200), 1.0);
+    NoProgress progress;
+    EXPECT_EQ(verifyDataset(directory_.path("d"), progress).value().problems, std::vector<std::string>{});
 }
 
 // Two spheres that touch nowhere, one of them far below every level's error: it goes on as something.
