@@ -2,17 +2,19 @@
 
 #include <meshoptimizer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <future>
 
 #include "tests/tools/levels/level_triangles.hpp"
 
 namespace iwalk::levels {
 namespace {
 
-// Halvings of the interval of their error bound: 1e-7 to 1 of the model's extent, to within 2 %.
-constexpr int kBisections = 10;
-constexpr double kLeastBound = 1e-7;
+// Of their error bound, from one try to the next, and the least; relative to the model's extent.
+constexpr double kFiner = 0.5, kLeastBound = 1e-7;
+constexpr double kBeyond = 8;  // times the coarsest level's error: where to begin
 
 // The welded input.
 struct IndexedMesh {
@@ -48,29 +50,51 @@ std::vector<FixedTriangle> simplify(const IndexedMesh& mesh, double bound) {
     return triangles;
 }
 
-// Their result with this bound, measured.
-void tryBound(const IndexedMesh& mesh, const Reference& full, double error, double bound,
-              SimplifyRace& race) {
-    auto triangles = simplify(mesh, bound);
-    race.theirTriangles = triangles.size();
-    race.theirP999 = deviationOf(std::move(triangles), full, error).p999();
+// What a bound comes to.
+struct Try {
+    double bound = 0;
+    std::uint64_t triangles = 0;
+    double p999 = 0;  // in parts of the grid
+};
+
+// Tries from coarse to fine, each finer by kFiner, two at a time: from one that is worse than `coarsest` (or
+// the coarsest that there is) to one that is as good as `finest`.
+std::vector<Try> triesFor(const IndexedMesh& mesh, const Reference& full, double coarsest, double finest,
+                          double bound) {
+    const auto attempt = [&](double at) {
+        auto triangles = simplify(mesh, at);
+        const std::uint64_t count = triangles.size();
+        return Try{at, count, deviationOf(std::move(triangles), full, 1).p999()};
+    };
+    std::vector<Try> tries{attempt(bound)};
+    if (tries.front().p999 <= coarsest) {
+        const Try most = attempt(1);
+        if (most.p999 <= coarsest) tries.insert(tries.begin(), most);
+        while (tries.front().p999 <= coarsest && tries.front().bound < 1)
+            tries.insert(tries.begin(), attempt(std::min(1.0, tries.front().bound / kFiner)));
+    }
+    while (tries.back().p999 > finest && tries.back().bound > kLeastBound) {
+        const double next = tries.back().bound * kFiner;
+        auto other = std::async(std::launch::async, attempt, next * kFiner);
+        tries.push_back(attempt(next));
+        tries.push_back(other.get());
+    }
+    return tries;
 }
 
-// Fills in their side: the coarsest that is as good as ours. `error`: the level's, in parts of the grid.
-void race(const IndexedMesh& mesh, const Reference& full, double error, SimplifyRace& result) {
-    tryBound(mesh, full, error, 1, result);
-    result.stuck = result.theirP999 <= result.p999;
-    if (result.stuck) return;
-    tryBound(mesh, full, error, kLeastBound, result);
-    double low = std::log(kLeastBound), high = 0;
-    for (int i = 0; i < kBisections; ++i) {
-        SimplifyRace attempt = result;
-        const double middle = (low + high) / 2;
-        tryBound(mesh, full, error, std::exp(middle), attempt);
-        const bool good = attempt.theirP999 <= result.p999;
-        (good ? low : high) = middle;
-        if (good) result = attempt;
-    }
+// Fills in their side from the two tries around our error; between them logarithms are linear.
+void race(const std::vector<Try>& tries, std::uint64_t all, double p999, SimplifyRace& result) {
+    const auto good =
+        std::find_if(tries.begin(), tries.end(), [&](const Try& one) { return one.p999 <= p999; });
+    result.stuck = good == tries.begin();
+    result.theirTriangles = good == tries.end() ? all : good->triangles;
+    if (result.stuck || good == tries.end() || good->p999 <= 0) return;
+    const Try& worse = *(good - 1);
+    const double way = std::log(p999 / good->p999) / std::log(worse.p999 / good->p999);
+    const double fewer =
+        std::log(static_cast<double>(good->triangles) / static_cast<double>(worse.triangles));
+    result.theirTriangles = static_cast<std::uint64_t>(
+        std::llround(static_cast<double>(good->triangles) * std::exp(-way * fewer)));
 }
 
 }  // namespace
@@ -82,14 +106,20 @@ Result<std::vector<SimplifyRace>> raceSimplify(const DatasetPages& pages, const 
     if (input.empty()) return report;
     const IndexedMesh mesh = weld(input);
     const Reference full(std::move(input), options);
+    std::vector<double> ours;  // in parts of the grid
     for (unsigned level = 0; level < pages.manifest().levels.size(); ++level) {
         ASSIGN_OR_RETURN(auto triangles, levelTriangles(pages, grid, level));
         const double error = pages.manifest().levels[level].error / grid.unit(pages.manifest());
-        SimplifyRace result{level, triangles.size(), 0, 0, 0, false};
-        result.p999 = deviationOf(std::move(triangles), full, error).p999();
-        race(mesh, full, error, result);
-        report.push_back(result);
+        report.push_back({level, triangles.size(), 0, 0, false});
+        ours.push_back(deviationOf(std::move(triangles), full, 1).p999());
+        report.back().p999 = ours.back() / error;
     }
+    if (report.empty()) return report;
+    const double coarsest = pages.manifest().levels[0].error / grid.unit(pages.manifest());
+    const double bound = std::min(1.0, kBeyond * std::ldexp(coarsest, -kGridLog2));
+    const auto [least, most] = std::minmax_element(ours.begin(), ours.end());
+    const std::vector<Try> tries = triesFor(mesh, full, *most, *least, bound);
+    for (SimplifyRace& result : report) race(tries, mesh.indices.size() / 3, ours[result.level], result);
     return report;
 }
 
