@@ -11,10 +11,7 @@ namespace {
 class DepthOcclusion : public Occlusion {
   public:
     DepthOcclusion(Renderer& renderer, Workers& workers) : renderer_(renderer), workers_(workers) {}
-    void update() override {
-        const glm::ivec2 size = renderer_.readBlockDepths(depths_);
-        pyramid_.build(depths_, size.x, size.y, workers_);
-    }
+    void update() override { renderer_.readBlockDepths(pyramid_); }
     void hidden(std::span<const ScreenBox> boxes, std::vector<std::uint8_t>& hidden) override {
         hidden.resize(boxes.size());
         workers_.runParts(boxes.size(), kTogether, [&](std::size_t first, std::size_t end) {
@@ -26,7 +23,6 @@ class DepthOcclusion : public Occlusion {
     static constexpr std::size_t kTogether = 256;  // boxes that a thread tests at a time
     Renderer& renderer_;
     Workers& workers_;
-    std::vector<float> depths_;
     DepthPyramid pyramid_;
 };
 

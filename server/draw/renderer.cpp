@@ -42,7 +42,7 @@ class GlRenderer : public Renderer {
     void finish() override;
     void drawLines(std::span<const Line> lines) override;
     void wait() override { glFinish(); }
-    glm::ivec2 readBlockDepths(std::vector<float>& depths) override;
+    void readBlockDepths(DepthPyramid& depths) override;
     void readBlockTriangles(std::vector<std::uint32_t>& numbers) override;
     glm::ivec2 bindBlock() override;
     void sampleBlockDepths(std::vector<float>& depths) override {
@@ -227,9 +227,11 @@ glm::ivec2 GlRenderer::bindBlock() {
     return {part.width, part.height};
 }
 
-glm::ivec2 GlRenderer::readBlockDepths(std::vector<float>& depths) {
-    visible_.readDepths(inFramebuffer(), depths);
-    return {block_.part.width, block_.part.height};
+void GlRenderer::readBlockDepths(DepthPyramid& depths) {
+    const PixelRect part = inFramebuffer();
+    depths.build(part.width, part.height, [&](int first, int rows, float* to) {
+        visible_.readDepths({part.x, part.y + first, part.width, rows}, to);
+    });
 }
 
 void GlRenderer::readBlockTriangles(std::vector<std::uint32_t>& numbers) {

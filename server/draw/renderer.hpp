@@ -14,6 +14,7 @@
 #include "server/draw/lines.hpp"
 #include "server/draw/tile_pixels.hpp"
 #include "server/draw/tints.hpp"
+#include "server/visibility/depth_pyramid.hpp"
 #include "server/visibility/frustum_visibility.hpp"
 
 namespace iwalk {
@@ -78,11 +79,12 @@ class Renderer {
 
     // Returns when all that was drawn is there; pages are still needed.
     virtual void wait() = 0;
-    // The pixels of the block's part as drawn so far, row by row: window depths, and triangles as (number of
-    // the draw + 1) << 16 | triangle in the page, or 0. The result is the part's width and height.
-    virtual glm::ivec2 readBlockDepths(std::vector<float>& depths) = 0;
+    // The pixels of the block's part as drawn so far: window depths, and, row by row, triangles as (number of
+    // the draw + 1) << 16 | triangle in the page, or 0.
+    virtual void readBlockDepths(DepthPyramid& depths) = 0;
     virtual void readBlockTriangles(std::vector<std::uint32_t>& numbers) = 0;
-    // Makes the block's part GL's viewport, for others to test boxes against its depth; likewise.
+    // Makes the block's part GL's viewport, for others to test boxes against its depth. The result is the
+    // part's width and height.
     virtual glm::ivec2 bindBlock() = 0;
 
     // Appends the window depths of the block's pixels, of a row here and there.

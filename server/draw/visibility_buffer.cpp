@@ -93,10 +93,9 @@ void VisibilityBuffer::bindForShading() const {
     }
 }
 
-void VisibilityBuffer::readDepths(const PixelRect& part, std::vector<float>& depths) const {
-    depths.resize(pixelsOf(part));
+void VisibilityBuffer::readDepths(const PixelRect& part, float* depths) const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, layers_[rest_].framebuffer);
-    glReadPixels(part.x, part.y, part.width, part.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+    glReadPixels(part.x, part.y, part.width, part.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths);
 }
 
 void VisibilityBuffer::sampleDepths(const PixelRect& part, std::vector<float>& depths) const {

@@ -34,7 +34,7 @@ class VisibilityBuffer {
     void bindForShading() const;  // texture units 0 to 3: numbers, depths, and those of the second layer
 
     // The pixels of a part of the block, row by row, as drawn so far.
-    void readDepths(const PixelRect& part, std::vector<float>& depths) const;
+    void readDepths(const PixelRect& part, float* depths) const;
     // Appends the depths of some of these rows.
     void sampleDepths(const PixelRect& part, std::vector<float>& depths) const;
     // The second layer's number where it has one, even where equal depths say otherwise.

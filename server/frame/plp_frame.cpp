@@ -102,8 +102,7 @@ void PlpFrame::drawBlock(const BlockView& view, protocol::TileStats& stats) {
     while (!spending.done()) {
         renderer_.wait();
         watch.lap();
-        const glm::ivec2 size = renderer_.readBlockDepths(depths_);
-        pyramid_.build(depths_, size.x, size.y, workers_);
+        renderer_.readBlockDepths(pyramid_);
         stats.pyramidMs += watch.lap();
         stats.hiddenRanges += spending.look(pyramid_, workers_);
         next = take(spending, view.eye);

@@ -46,8 +46,7 @@ class PlpFrame {
     std::vector<PlpRange> ranges_;
     std::vector<bool> drawn_;
     std::deque<std::uint64_t> budgets_;
-    DepthPyramid pyramid_;
-    std::vector<float> depths_;  // scratch
+    DepthPyramid pyramid_;  // scratch
 };
 
 }  // namespace iwalk

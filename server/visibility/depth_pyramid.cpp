@@ -9,43 +9,46 @@
 namespace iwalk {
 namespace {
 
-// The farthest of 2 x 2 squares, for rows [first, end) of the result; a last row or column without a partner
-// stands twice. Plain loops: compilers make vectors of them.
-void halve(const float* from, int width, int height, float* to, int first, int end) {
-    const int toWidth = (width + 1) / 2;
-    std::vector<float> row(static_cast<std::size_t>(2 * toWidth));
-    for (int y = first; y < end; ++y) {
-        const float* upper = from + std::ptrdiff_t{2 * y} * width;
-        const float* lower = 2 * y + 1 < height ? upper + width : upper;
-        float* both = row.data();
-        for (int x = 0; x < width; ++x) both[x] = std::min(upper[x], lower[x]);
-        if (width & 1) both[width] = both[width - 1];
-        float* out = to + std::ptrdiff_t{y} * toWidth;
-        for (int x = 0; x < toWidth; ++x) out[x] = std::min(both[2 * x], both[2 * x + 1]);
-    }
-}
+constexpr std::size_t kLevelsTogether = 6;           // that are made of some rows
+constexpr int kRowsTogether = 1 << kLevelsTogether;  // of pixels
 
-constexpr std::size_t kTogether = 64;  // rows that a thread takes
+// The farthest of 2 x 2 squares. A plain loop: compilers make vectors of it.
+void halveRow(const float* upper, const float* lower, int squares, float* to) {
+    for (int x = 0; x < squares; ++x)
+        to[x] = std::min(std::min(upper[2 * x], upper[2 * x + 1]), std::min(lower[2 * x], lower[2 * x + 1]));
+}
 
 }  // namespace
 
-void DepthPyramid::build(std::vector<float>& depths, int width, int height, Workers& workers) {
-    CHECK_OP(depths.size(), ==, static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    const int levels = 1 + std::bit_width(static_cast<unsigned>(std::max({width, height, 1}) - 1));
-    levels_.resize(static_cast<std::size_t>(levels));
-    levels_.front().width = width, levels_.front().height = height;
-    levels_.front().farthest.swap(depths);
-    for (std::size_t i = 1; i < levels_.size(); ++i) {
-        const Level& finer = levels_[i - 1];
+void DepthPyramid::build(int width, int height, const ReadRows& read) {
+    CHECK(width > 0 && height > 0);
+    levels_.resize(
+        1 + static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(std::max(width, height) - 1))));
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
         Level& level = levels_[i];
-        level.width = (finer.width + 1) / 2;
-        level.height = (finer.height + 1) / 2;
-        const auto rows = static_cast<std::size_t>(level.height);
-        level.farthest.resize(static_cast<std::size_t>(level.width) * rows);
-        workers.runParts(rows, kTogether, [&](std::size_t first, std::size_t end) {
-            halve(finer.farthest.data(), finer.width, finer.height, level.farthest.data(),
-                  static_cast<int>(first), static_cast<int>(end));
-        });
+        level.width = i == 0 ? width : (levels_[i - 1].width + 1) / 2;
+        level.height = i == 0 ? height : (levels_[i - 1].height + 1) / 2;
+        level.farthest.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+    }
+    const std::size_t together = std::min(levels_.size(), kLevelsTogether + 1);
+    for (int y = 0; y < height; y += kRowsTogether) {
+        const int end = std::min(height, y + kRowsTogether);
+        read(y, end - y, levels_.front().farthest.data() + std::ptrdiff_t{y} * width);
+        for (std::size_t i = 1; i < together; ++i) halve(i, y >> i, ((end - 1) >> i) + 1);
+    }
+    for (std::size_t i = together; i < levels_.size(); ++i) halve(i, 0, levels_[i].height);
+}
+
+// Rows [first, end) of a level; a last row or column of the finer one without a partner stands twice.
+void DepthPyramid::halve(std::size_t index, int first, int end) {
+    const Level& finer = levels_[index - 1];
+    Level& level = levels_[index];
+    for (int y = first; y < end; ++y) {
+        const float* upper = finer.farthest.data() + std::ptrdiff_t{2 * y} * finer.width;
+        const float* lower = 2 * y + 1 < finer.height ? upper + finer.width : upper;
+        float* to = level.farthest.data() + std::ptrdiff_t{y} * level.width;
+        halveRow(upper, lower, finer.width / 2, to);
+        if (finer.width & 1) to[level.width - 1] = std::min(upper[finer.width - 1], lower[finer.width - 1]);
     }
 }
 

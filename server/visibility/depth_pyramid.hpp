@@ -1,9 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "server/visibility/screen_box.hpp"
-#include "server/visibility/workers.hpp"
 
 namespace iwalk {
 
@@ -11,9 +11,11 @@ namespace iwalk {
 // Depths are reversed, so the farthest is the least.
 class DepthPyramid {
   public:
-    // `depths`: of the pixels (0, 0) to (width, height), row by row; what they were the last time is given
-    // back, to be filled again. Later questions must stay within them.
-    void build(std::vector<float>& depths, int width, int height, Workers& workers);
+    // Writes the depths of rows [first, first + rows), one row after another.
+    using ReadRows = std::function<void(int first, int rows, float* depths)>;
+    // Of the pixels (0, 0) to (width, height), in which later questions must stay. Reads some rows at a time,
+    // and makes their squares while they are in the processor's cache.
+    void build(int width, int height, const ReadRows& read);
 
     // Whether all pixels of the box are strictly nearer than it. Exact to the pixel; the pyramid only makes
     // it fast.
@@ -28,6 +30,7 @@ class DepthPyramid {
         std::vector<float> farthest;
     };
     bool hides(const ScreenBox& box, int level) const;
+    void halve(std::size_t level, int first, int end);
 
     std::vector<Level> levels_;  // from squares of 1 px on
 };

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <random>
 
 namespace iwalk {
@@ -14,10 +16,11 @@ bool hidesByLooking(const std::vector<float>& depths, int width, const ScreenBox
     return true;
 }
 
-DepthPyramid pyramidOf(std::vector<float> depths, int width, int height, unsigned threads = 1) {
+DepthPyramid pyramidOf(const std::vector<float>& depths, int width, int height) {
     DepthPyramid pyramid;
-    Workers workers(threads);
-    pyramid.build(depths, width, height, workers);
+    pyramid.build(width, height, [&](int first, int rows, float* to) {
+        std::copy_n(depths.begin() + std::ptrdiff_t{first} * width, std::ptrdiff_t{rows} * width, to);
+    });
     return pyramid;
 }
 
@@ -29,7 +32,7 @@ TEST(DepthPyramid, IsExactToThePixel) {
         std::vector<float> depths(static_cast<std::size_t>(width * height), 0.5f);
         for (int i = 0; i < width * height / 50; ++i)
             depths[random() % depths.size()] = static_cast<float>(below(5)) / 4;
-        const DepthPyramid pyramid = pyramidOf(depths, width, height, 3);
+        const DepthPyramid pyramid = pyramidOf(depths, width, height);
         int hidden = 0;
         for (int i = 0; i < 3000; ++i) {
             ScreenBox box;

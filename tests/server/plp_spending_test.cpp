@@ -23,9 +23,7 @@ std::size_t look(PlpSpending& spending, const DepthPyramid& drawn) {
 // 10 x 10 pixels at one depth.
 DepthPyramid flat(float depth) {
     DepthPyramid pyramid;
-    Workers alone(1);
-    std::vector<float> depths(100, depth);
-    pyramid.build(depths, 10, 10, alone);
+    pyramid.build(10, 10, [&](int, int rows, float* to) { std::fill_n(to, 10 * rows, depth); });
     return pyramid;
 }
 

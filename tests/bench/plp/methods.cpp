@@ -81,8 +81,7 @@ Method modePlp(const Bench& bench, OwnerRenders& renders) {
                         chosen.push_back({ranges[taken.number].page, ranges[taken.number].range, 1});
                     if (spending.done()) return chosen;
                     DepthPyramid drawn;
-                    std::vector<float> depths = renders.depthsOf(shot.sight, chosen);
-                    drawn.build(depths, shot.sight.tile.width, shot.sight.tile.height, *bench.workers);
+                    renders.depthsOf(shot.sight, chosen, drawn);
                     spending.look(drawn, *bench.workers);
                 }
             }};

@@ -110,7 +110,8 @@ std::vector<std::vector<Owned>> OwnerRenders::draw(const Wall& wall, const Camer
     return owned;
 }
 
-std::vector<float> OwnerRenders::depthsOf(const TileSight& sight, const std::vector<VisibleRanges>& chosen) {
+void OwnerRenders::depthsOf(const TileSight& sight, const std::vector<VisibleRanges>& chosen,
+                            DepthPyramid& depths) {
     const PixelRect& tile = sight.tile;
     glEnable(GL_SCISSOR_TEST);
     glScissor(tile.x, tile.y, tile.width, tile.height);
@@ -120,9 +121,9 @@ std::vector<float> OwnerRenders::depthsOf(const TileSight& sight, const std::vec
         const auto first = ranges.begin() + some.firstRange;
         drawPage(dataset_.hierarchy.pages[some.page], some.page, sight.eye, {first, first + some.rangeCount});
     }
-    std::vector<float> depths(static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height));
-    glReadPixels(tile.x, tile.y, tile.width, tile.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
-    return depths;
+    depths.build(tile.width, tile.height, [&](int first, int rows, float* to) {
+        glReadPixels(tile.x, tile.y + first, tile.width, rows, GL_DEPTH_COMPONENT, GL_FLOAT, to);
+    });
 }
 
 // Within the scissor.

@@ -36,7 +36,7 @@ class OwnerRenders {
     // Owners of the pixels of each tile, by page and range.
     std::vector<std::vector<Owned>> draw(const Wall& wall, const Camera& camera);
     // Window depths of the tile's pixels when these ranges are drawn and nothing else.
-    std::vector<float> depthsOf(const TileSight& sight, const std::vector<VisibleRanges>& chosen);
+    void depthsOf(const TileSight& sight, const std::vector<VisibleRanges>& chosen, DepthPyramid& depths);
 
   private:
     OwnerRenders(const Dataset& dataset, const Cut& cut, const CutPages& pages, int width, int height);

@@ -103,11 +103,8 @@ protocol::TileStats BenchTile::drawRanges(const TileView& view, std::span<const 
 }
 
 std::vector<VisibleRanges> BenchTile::notHidden(const TileView& view) {
-    std::vector<float> depths;
-    const glm::ivec2 size = renderer_->readBlockDepths(depths);
     DepthPyramid pyramid;
-    Workers alone(1);
-    pyramid.build(depths, size.x, size.y, alone);
+    renderer_->readBlockDepths(pyramid);
     const std::vector<VisibleRanges> all = inFrustum(view);
     const BlockView block(view, onlyBlock(view));
     cache_->beginFrame(pagesOf(all));
