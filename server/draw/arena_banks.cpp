@@ -16,10 +16,10 @@ constexpr std::uint64_t kMaxBankBytes = std::uint64_t{1} << 30;
 
 Result<std::vector<std::span<std::byte>>> makeArenaBanks(std::uint64_t bytes, std::uint64_t alignment,
                                                          std::vector<std::uint32_t>& banks) {
-    GLint64 largest = 0;  // that the second pass can read as one
-    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
+    GLint texels = 0;  // of 8 bytes, that the second pass can read of a buffer
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
     const std::uint64_t bank =
-        std::min(kMaxBankBytes, static_cast<std::uint64_t>(largest)) / alignment * alignment;
+        std::min(kMaxBankBytes, 8 * static_cast<std::uint64_t>(texels)) / alignment * alignment;
     constexpr GLbitfield kAccess =
         GL_MAP_WRITE_BIT | GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
     std::vector<std::span<std::byte>> memory;

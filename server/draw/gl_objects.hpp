@@ -15,6 +15,14 @@ inline GLuint makeTexture(GLenum format, int width, int height) {
     return texture;
 }
 
+// Reads a buffer.
+inline GLuint makeTextureBuffer(GLenum format, GLuint buffer) {
+    GLuint texture = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &texture);
+    glTextureBuffer(texture, format, buffer);
+    return texture;
+}
+
 // Of positions: unsigned integers from one buffer.
 inline GLuint makeVertexArray(GLint components) {
     GLuint array = 0;

@@ -22,6 +22,7 @@ namespace iwalk {
 namespace {
 
 constexpr std::size_t kMaxSlots = 65535;  // a slot and a triangle in a page fit in 32 bits, and 0 is free
+constexpr int kTexelsOfPages = kMaxSlots * sizeof(ShadedPage) / 16;
 constexpr std::uint32_t kNoBank = 0xffffffff;  // of pages that are not there any more
 
 class GlRenderer : public Renderer {
@@ -32,7 +33,9 @@ class GlRenderer : public Renderer {
     Result<void> setLook(const SceneLook& look) override;
 
     Result<std::vector<std::span<std::byte>>> lendArena(std::uint64_t bytes) override {
-        return makeArenaBanks(bytes, kArenaAlignment, banks_);
+        ASSIGN_OR_RETURN(auto memory, makeArenaBanks(bytes, kArenaAlignment, banks_));
+        for (const GLuint bank : banks_) bankTextures_.push_back(makeTextureBuffer(GL_RG32UI, bank));
+        return memory;
     }
     void beginFrame(const TileView& view, TilePixels& pixels) override;
     void beginBlock(const Block& block) override;
@@ -71,8 +74,8 @@ class GlRenderer : public Renderer {
     std::array<GLuint, 2> visibilityPrograms_{}, vertexArrays_{};  // narrow, wide
     GLuint emptyArray_ = 0;
     std::array<GLuint, kShadeVariants> shadingPrograms_{};
-    std::vector<GLuint> banks_;
-    GLuint pagesBuffer_ = 0, tintsBuffer_ = 0;
+    std::vector<GLuint> banks_, bankTextures_;
+    GLuint pagesBuffer_ = 0, pagesTexture_ = 0, tintsBuffer_ = 0;
     std::vector<ShadedPage> slots_;     // by slot: what was drawn in this block
     std::vector<std::uint32_t> tints_;  // of slots, as in ShadedPage::tints
     std::size_t unshaded_ = 0;          // slots from here on have not been shaded
@@ -85,6 +88,8 @@ class GlRenderer : public Renderer {
 GlRenderer::~GlRenderer() {
     for (const GLuint program : visibilityPrograms_) glDeleteProgram(program);
     for (const GLuint program : shadingPrograms_) glDeleteProgram(program);
+    glDeleteTextures(1, &pagesTexture_);
+    glDeleteTextures(static_cast<GLsizei>(bankTextures_.size()), bankTextures_.data());
     for (const GLuint array : {vertexArrays_[0], vertexArrays_[1], emptyArray_})
         glDeleteVertexArrays(1, &array);
     glDeleteBuffers(1, &pagesBuffer_);
@@ -93,6 +98,10 @@ GlRenderer::~GlRenderer() {
 }
 
 Result<void> GlRenderer::prepare(std::span<const PixelRect> tiles) {
+    GLint texels = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+    if (texels < kTexelsOfPages)
+        return fail("this GL reads {} texels of a buffer; {} are wanted", texels, kTexelsOfPages);
     RETURN_IF_ERROR(prepareBlocks(tiles));
     RETURN_IF_ERROR(lines_.prepare());
     RETURN_IF_ERROR(compileVisibilityPrograms(visibilityPrograms_, look_.overdraw));
@@ -101,6 +110,7 @@ Result<void> GlRenderer::prepare(std::span<const PixelRect> tiles) {
     glCreateBuffers(1, &pagesBuffer_);
     glCreateBuffers(1, &tintsBuffer_);
     glNamedBufferStorage(pagesBuffer_, kMaxSlots * sizeof(ShadedPage), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    pagesTexture_ = makeTextureBuffer(GL_RGBA32UI, pagesBuffer_);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDepthFunc(GL_GREATER);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -277,7 +287,7 @@ void GlRenderer::shade() {
     bindPicture(pixels_->framebuffer());
     glViewport(0, 0, pixels_->width(), pixels_->height());
     glBindVertexArray(emptyArray_);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kPagesBinding, pagesBuffer_);
+    glBindTextureUnit(kPagesUnit, pagesTexture_);
     if (look_.tints) {
         glNamedBufferData(tintsBuffer_, static_cast<GLsizeiptr>(4 * tints_.size()), tints_.data(),
                           GL_STREAM_DRAW);
@@ -291,7 +301,7 @@ void GlRenderer::shade() {
     }
     for (std::uint32_t bank = 0; bank < banks_.size(); ++bank) {
         if (!used[bank]) continue;
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kWordsBinding, banks_[bank]);
+        glBindTextureUnit(kPairsUnit, bankTextures_[bank]);
         glUniform1ui(kBank, bank);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }

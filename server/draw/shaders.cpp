@@ -51,6 +51,7 @@ const char* const kVisibilityFragment = R"(
 layout(location = 4) uniform uint firstId;
 layout(location = 11) uniform float nearest = 1.0;
 layout(location = 0) out uint id;
+layout(depth_less) out float gl_FragDepth;  // what is behind need not be shaded to know it
 #if COUNTS
 layout(binding = 0, r32ui) uniform uimage2D counts;
 #endif
@@ -137,19 +138,12 @@ layout(binding = 1) uniform sampler2D depths;
 layout(binding = 2) uniform usampler2D visibleRest;
 layout(binding = 3) uniform sampler2D depthsRest;
 #endif
-
-struct Page {
-    dvec3 origin;
-    uvec4 streams;
-    uint bank;
-    uint wide;
-    uint rank;
-    uint tints;
-};
-layout(std430, binding = 0) readonly buffer Words { uint words[]; };
-layout(std430, binding = 1) readonly buffer Pages { Page pages[]; };
+// Buffers are read as textures: llvmpipe fetches texels for all pixels of a vector at once, but words of storage
+// buffers for one after another.
+layout(binding = 4) uniform usamplerBuffer pairs;
+layout(binding = 5) uniform usamplerBuffer pages;
 #if TINT
-layout(std430, binding = 2) readonly buffer Tints { uint tints[]; };
+layout(std430, binding = 0) readonly buffer Tints { uint tints[]; };
 #endif
 #if OVERDRAW
 layout(binding = 0, r32ui) readonly uniform uimage2D counts;
@@ -160,16 +154,24 @@ layout(location = 0) out vec4 color;
 layout(location = 1) out float depth;
 #endif
 
+// 32-bit words of the bank, two in a texel. What has two words or more begins a texel.
+uint wordAt(uint at) {
+    uvec2 pair = texelFetch(pairs, int(at >> 1)).rg;
+    return (at & 1u) == 0u ? pair.x : pair.y;
+}
+
 uvec3 cornerIndices(uint stream, uint triangle) {
     uint first = 3u * triangle;
-    uint a = words[stream + (first >> 1)], b = words[stream + (first >> 1) + 1u];
+    uint at = stream + (first >> 1);
+    uint a = wordAt(at), b = wordAt(at + 1u);
     return (first & 1u) == 0u ? uvec3(a & 0xffffu, a >> 16, b & 0xffffu) : uvec3(a >> 16, b & 0xffffu, b >> 16);
 }
 
 uvec3 offsetOf(uint stream, bool wide, uint vertex) {
     uint at = stream + (wide ? 3u : 2u) * vertex;
-    uvec3 p = uvec3(words[at], words[at + 1u], words[at + 2u]);
-    return wide ? p : unpackNarrow(p.xy);
+    uvec2 pair = texelFetch(pairs, int(at >> 1)).rg, next = texelFetch(pairs, int(at >> 1) + 1).rg;
+    if (wide) return (at & 1u) == 0u ? uvec3(pair, next.x) : uvec3(pair.y, next);
+    return unpackNarrow(pair);
 }
 
 // Unsigned differences, each exact before it becomes a float.
@@ -178,11 +180,11 @@ vec3 edge(uvec3 from, uvec3 to) {
 }
 
 vec3 colorOf(uint stream, uint vertex) {
-    return unpackUnorm4x8(words[stream + vertex]).rgb;
+    return unpackUnorm4x8(wordAt(stream + vertex)).rgb;
 }
 
 vec3 normalOf(uint stream, uint vertex) {
-    vec2 p = unpackSnorm2x16(words[stream + vertex]);
+    vec2 p = unpackSnorm2x16(wordAt(stream + vertex));
     vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
     if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
     return normalize(n);
@@ -210,6 +212,11 @@ vec3 tintOf(uint at, uint triangle) {
 }
 #endif
 
+// Part 0 to 3 of a triangle's page (ShadedPage).
+uvec4 pageOf(uint id, uint part) {
+    return texelFetch(pages, int(4u * ((id >> 16) - 1u) + part));
+}
+
 // The nearest triangle; of equally near ones the first in the order of pages, then in the page.
 uint nearestTriangle(ivec2 pixel) {
     uint first = texelFetch(visible, pixel, 0).r;
@@ -218,7 +225,7 @@ uint nearestTriangle(ivec2 pixel) {
     if (rest == 0u) return first;
     bool tie = first != 0u && texelFetch(depths, pixel, 0).r == texelFetch(depthsRest, pixel, 0).r;
     if (!tie) return rest;
-    uint rankFirst = pages[(first >> 16) - 1u].rank, rankRest = pages[(rest >> 16) - 1u].rank;
+    uint rankFirst = pageOf(first, 3u).z, rankRest = pageOf(rest, 3u).z;
     bool restIsFirst = rankRest < rankFirst || (rankRest == rankFirst && (rest & 0xffffu) < (first & 0xffffu));
     if (restIsFirst) return rest;
 #endif
@@ -228,13 +235,14 @@ uint nearestTriangle(ivec2 pixel) {
 void main() {
     uint id = nearestTriangle(ivec2(gl_FragCoord.xy) + inBlock);
     if (id == 0u) discard;
-    uint slot = (id >> 16) - 1u;
-    if (pages[slot].bank != bank) discard;
-    uvec4 streams = pages[slot].streams;
-    bool wide = pages[slot].wide != 0u;
+    uvec4 about = pageOf(id, 3u);
+    if (about.x != bank) discard;
+    uvec4 streams = pageOf(id, 2u), originXY = pageOf(id, 0u);
+    dvec3 origin = dvec3(packDouble2x32(originXY.xy), packDouble2x32(originXY.zw), packDouble2x32(pageOf(id, 1u).xy));
+    bool wide = about.y != 0u;
     uvec3 corner = cornerIndices(streams.w, id & 0xffffu);
     uvec3 first = offsetOf(streams.x, wide, corner.x);
-    vec3 a = vec3(pages[slot].origin + dvec3(first));
+    vec3 a = vec3(origin + dvec3(first));
     vec3 ab = edge(first, offsetOf(streams.x, wide, corner.y)), ac = edge(first, offsetOf(streams.x, wide, corner.z));
 
     // Squared areas of the largest triangles must stay within a float.
@@ -263,7 +271,7 @@ void main() {
     base = rampColor((t * direction.z - ramp.x) * ramp.y);
 #endif
 #if TINT
-    base = tintOf(pages[slot].tints, id & 0xffffu);
+    base = tintOf(about.w, id & 0xffffu);
 #endif
 #if OVERDRAW
     base = rampColor(log2(float(imageLoad(counts, ivec2(gl_FragCoord.xy) + inBlock).r)) / 8.0);

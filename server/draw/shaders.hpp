@@ -39,7 +39,7 @@ enum UniformLocation : std::int32_t {
     kBoxCorners = 12,  // vec4: of a rectangle, in clip space
 };
 
-// What the second pass knows of a page, by slot; std430.
+// What the second pass knows of a page, by slot: four texels of GL_RGBA32UI.
 struct ShadedPage {
     double origin[4];          // from the eye, steps; the last is unused
     std::uint32_t streams[4];  // where positions, colours, normals, indices begin: 32-bit words into the bank
@@ -51,7 +51,8 @@ struct ShadedPage {
 };
 static_assert(sizeof(ShadedPage) == 64);
 
-enum StorageBinding : std::uint32_t { kWordsBinding = 0, kPagesBinding = 1, kTintsBinding = 2 };
+enum TextureUnit : std::uint32_t { kPairsUnit = 4, kPagesUnit = 5 };  // the bank as GL_RG32UI; ShadedPages
+enum StorageBinding : std::uint32_t { kTintsBinding = 0 };
 enum ImageBinding : std::uint32_t { kCountsBinding = 0 };  // how many triangles cover each pixel of a block
 
 // Compile and link; the error holds the GL's log. The first pass comes for narrow and for wide pages, which
