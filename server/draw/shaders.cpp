@@ -51,9 +51,10 @@ const char* const kVisibilityFragment = R"(
 layout(location = 4) uniform uint firstId;
 layout(location = 11) uniform float nearest = 1.0;
 layout(location = 0) out uint id;
-layout(depth_less) out float gl_FragDepth;  // what is behind need not be shaded to know it
 #if COUNTS
 layout(binding = 0, r32ui) uniform uimage2D counts;
+#else
+layout(depth_less) out float gl_FragDepth;  // what is behind may be left out before this is known
 #endif
 void main() {
 #if COUNTS
