@@ -43,7 +43,7 @@ cleanup() {
     job=
 }
 slurm() {
-    : >called
+    : >called; : >log  # the last job must not be taken for this one
     PATH=$work/fake:$PATH ./slurm_script "$work/dataset" --wall wall.toml --bin "$bin" "$@" >log 2>errors &
     job=$!
     for _ in $(seq 600); do
