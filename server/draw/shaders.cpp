@@ -155,7 +155,7 @@ layout(location = 0) out vec4 color;
 layout(location = 1) out float depth;
 #endif
 
-// 32-bit words of the bank, two in a texel. What has two words or more begins a texel.
+// 32-bit words of the bank, two in a texel. Streams and narrow positions begin a texel.
 uint wordAt(uint at) {
     uvec2 pair = texelFetch(pairs, int(at >> 1)).rg;
     return (at & 1u) == 0u ? pair.x : pair.y;
