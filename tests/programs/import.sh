@@ -30,6 +30,9 @@ refuses "no-such-*.ply" "$preprocess" build 'no-such-*.ply' -o none
 mkdir empty
 refuses "has no models in it" "$preprocess" build empty -o none
 "$preprocess" verify all >/dev/null || complain "the dataset does not verify"
+for other in parts/b.stl parts/deep/c.wrl parts/deep/d.off; do
+    "$bin/iwalk-same-triangles" parts/a.obj $other >log || complain "not the same triangle: $(cat log)"
+done
 
 # Turned: (0, 2, 3) becomes (0, -3, 2).
 build --up y parts/a.obj -o turned
@@ -42,6 +45,10 @@ JSON
 build pair.json -o pair
 same "an assembly's triangles" "$(of pair triangles)" 1600
 same "an assembly's colours" "$(of pair attributes colors)" True
+status=0
+"$bin/iwalk-same-triangles" good.ply pair.json --within 1 >log || status=$?
+same "the exit code when some are only in one" $status 1
+same "the triangles only in one" "$(grep -o 'only in.*: [0-9]*' log | tr '\n' ' ')" "only in good.ply: 0 only in pair.json: 800 "
 "$preprocess" measure good.ply pair.json --json | python3 -c '
 import json, sys
 good, pair = json.load(sys.stdin)
