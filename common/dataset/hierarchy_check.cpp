@@ -98,11 +98,11 @@ class Checker {
                 return errors_.node(i, "own box reaches out of its box");
             const std::size_t count = static_cast<std::size_t>(Hierarchy::childCount(nodes[i]));
             if (count == 0 && nodes[i].firstChild != 0) return errors_.node(i, "a leaf with children");
-            if (count > 0 && (nodes[i].firstChild <= i || nodes[i].firstChild > nodes.size() - count)) {
-                return errors_.node(i, "children from {} on, {} of them, of {}", nodes[i].firstChild, count,
-                                    nodes.size());
+            const std::size_t first = nodes[i].firstChild;
+            if (count > 0 && (first <= i || first > nodes.size() || count > nodes.size() - first)) {
+                return errors_.node(i, "children from {} on, {} of them, of {}", first, count, nodes.size());
             }
-            for (std::size_t c = nodes[i].firstChild; c < nodes[i].firstChild + count; ++c) {
+            for (std::size_t c = first; c < first + count; ++c) {
                 if (reached[c]) return errors_.node(c, "has two parents");
                 reached[c] = true;
                 if (nodes[c].depth != nodes[i].depth + 1) {

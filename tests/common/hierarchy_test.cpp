@@ -127,6 +127,8 @@ TEST_F(HierarchyTest, NodesAreChecked) {
     for (const std::uint32_t first : {0u, 2u, 0xffffffffu}) {
         refused("node 0", "children from", [&](Hierarchy& h) { h.nodes[0].firstChild = first; });
     }
+    refused("node 0", "children from 1 on, 8 of them, of 4",
+            [](Hierarchy& h) { h.nodes[0].childMask = 0xff; });
     refused("node 3", "no parent", [](Hierarchy& h) { h.nodes[0].childMask = 3; });
     refused("node 1", "leaf with children", [](Hierarchy& h) { h.nodes[1].firstChild = 3; });
     refused("node 2", "depth", [](Hierarchy& h) { h.nodes[2].depth = 2; });
