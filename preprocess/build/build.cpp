@@ -201,7 +201,7 @@ class Build {
         RETURN_IF_ERROR(writer.flush());
         ASSIGN_OR_RETURN(const auto store,
                          PageStore::open(std::move(paths), lattice_, budget_.batchBytes / 5));
-        const LevelOptions options{options_.leafTriangles, budget_.threads};
+        const LevelOptions options{options_.leafTriangles, budget_.threads, parts_.levels};
         return makeLevels(model, format, options, tree_, *store, writer, spill, progress_);
     }
 

@@ -43,6 +43,19 @@ void own(Slice& slice, std::size_t words) {
 
 }  // namespace
 
+std::vector<std::size_t> cutPages(std::span<const Run> runs, std::size_t mostTriangles) {
+    const std::size_t triangles = runs.back().end;
+    const std::size_t pages = (triangles + mostTriangles - 1) / mostTriangles;
+    const std::size_t share = (triangles + pages - 1) / pages;
+    std::vector<std::size_t> ends;
+    for (std::size_t first = 0, next = 0, begin = 0; first < runs.size(); first = next) {
+        while (next < runs.size() && (next == first || runs[next].end - begin <= share)) ++next;
+        begin = runs[next - 1].end;
+        ends.push_back(next);
+    }
+    return ends;
+}
+
 Packer::Packer(const RecordFormat& format, std::size_t mostTriangles)
     : format_(format), words_(format.words()), most_(std::min(mostTriangles, kMaxPageTriangles)) {}
 
@@ -76,13 +89,10 @@ void Packer::add(Slice slice) {
     add(std::move(slice), total);
 }
 
-// As few pages as do, each of whole runs and about as large as the others.
 void Packer::addPieces(const Slice& slice) {
     closeShared();
-    const std::size_t pages = (slice.count + most_ - 1) / most_;
-    const std::size_t share = (slice.count + pages - 1) / pages;
-    for (std::size_t first = 0, next = 0, begin = 0; first < slice.runs.size(); first = next) {
-        while (next < slice.runs.size() && (next == first || slice.runs[next].end - begin <= share)) ++next;
+    std::size_t first = 0, begin = 0;
+    for (const std::size_t next : cutPages(slice.runs, most_)) {
         const std::size_t end = slice.runs[next - 1].end;
         Slice piece = part(slice, begin, end, words_);
         own(piece, words_);
@@ -90,7 +100,7 @@ void Packer::addPieces(const Slice& slice) {
             piece.runs.push_back(slice.runs[run]);
             piece.runs.back().end -= begin;
         }
-        begin = end;
+        first = next, begin = end;
         complete_.push_back({{}, {}});
         complete_.back().slices.push_back(std::move(piece));
     }

@@ -1,11 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "preprocess/build/page_job.hpp"
 
 namespace iwalk {
+
+// Cuts an entry into as few pages as do, each of whole runs and about as large as the others: where the runs
+// of each page end.
+std::vector<std::size_t> cutPages(std::span<const Run> runs, std::size_t mostTriangles);
 
 // Deals the triangles of the nodes, which come in depth-first order, out to pages. What a node has too much
 // for one page is cut evenly; small neighbours share a page. The pages do not depend on how nodes come in
@@ -20,8 +25,9 @@ class Packer {
     void add(Slice slice, std::uint64_t total);
     // A whole entry of a coarser level, with its runs and its triangles its own.
     void add(Slice slice);
-    // No more slices come.
+    // Completes the page that waits.
     void finish() { closeShared(); }
+    std::size_t mostTriangles() const { return most_; }  // of a page
     // The pages that are complete.
     std::vector<PageJob> take() { return std::exchange(complete_, {}); }
     // Copies what still waits for its page out of memory that is about to go.

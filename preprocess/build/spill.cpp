@@ -57,8 +57,8 @@ Result<std::uint32_t> ChunkFile::write(std::span<const std::byte> chunk) {
     return index;
 }
 
-Result<void> ChunkFile::read(std::uint32_t chunk, std::span<std::byte> out) const {
-    std::uint64_t offset = std::uint64_t{chunk} * chunkBytes_;
+Result<void> ChunkFile::read(std::uint32_t chunk, std::span<std::byte> out, std::size_t inChunk) const {
+    std::uint64_t offset = std::uint64_t{chunk} * chunkBytes_ + inChunk;
     while (!out.empty()) {
         const ssize_t got = ::pread(descriptor_, out.data(), out.size(), static_cast<off_t>(offset));
         if (got < 0 && errno == EINTR) continue;

@@ -20,7 +20,8 @@ class ChunkFile {
 
     std::size_t chunkBytes() const { return chunkBytes_; }
     Result<std::uint32_t> write(std::span<const std::byte> chunk);  // at most chunkBytes()
-    Result<void> read(std::uint32_t chunk, std::span<std::byte> out) const;
+    // From byte `inChunk` of the chunk on.
+    Result<void> read(std::uint32_t chunk, std::span<std::byte> out, std::size_t inChunk = 0) const;
     void release(std::uint32_t chunk) { free_.push_back(chunk); }
 
   private:

@@ -11,9 +11,6 @@
 namespace iwalk {
 namespace {
 
-// Source triangles at once in memory, with what becomes of them; more only when a single node has more.
-constexpr std::uint64_t kChunkTriangles = 200'000;
-
 void addBox(NodeRecord& node, bool whole, const LatticeBox& box) {
     if (whole) return extendBox(node.boxMin, node.boxMax, box);
     extendBox(node.ownMin, node.ownMax, box);
@@ -38,23 +35,29 @@ Result<void> LevelApplier::run(const std::function<void(double)>& done) {
     // The first page that jobs from here on need.
     std::vector<std::uint32_t> needed(jobs.size() + 1, static_cast<std::uint32_t>(stage_.changing));
     for (std::size_t i = jobs.size(); i-- > 0;) needed[i] = std::min(needed[i + 1], jobs[i].firstPage);
+    const std::uint64_t most = tools_.sizes.chunkTriangles;
     for (std::size_t begin = 0, end = 0; begin < jobs.size(); begin = end) {
-        std::uint64_t triangles = 0;
+        std::uint64_t triangles = 0, vertices = 0;
         std::uint32_t lastPage = 0;
-        for (; end < jobs.size() && (end == begin || triangles + jobs[end].triangles <= kChunkTriangles);
-             ++end) {
-            triangles += jobs[end].triangles;
+        for (; end < jobs.size(); ++end) {
+            triangles += jobs[end].triangles, vertices += jobs[end].vertices;
+            if (triangles > most || vertices > 2 * most) break;
             lastPage = std::max(lastPage, jobs[end].lastPage);
         }
-        RETURN_IF_ERROR(loadUpTo(lastPage + 1));
-        RETURN_IF_ERROR(makeEntries(std::span(jobs).subspan(begin, end - begin)));
-        RETURN_IF_ERROR(writePages());
+        if (end == begin) {
+            ++end;
+            RETURN_IF_ERROR(makeLargeEntry(jobs[begin], needed[end]));
+        } else {
+            RETURN_IF_ERROR(loadUpTo(lastPage + 1));
+            RETURN_IF_ERROR(makeEntries(std::span(jobs).subspan(begin, end - begin)));
+        }
+        RETURN_IF_ERROR(writePages(packer_.take()));
         release(needed[end]);
         done(static_cast<double>(end) / static_cast<double>(jobs.size()));
     }
     RETURN_IF_ERROR(loadUpTo(static_cast<std::uint32_t>(stage_.changing)));
     packer_.finish();
-    return writePages();
+    return writePages(packer_.take());
 }
 
 std::vector<LevelApplier::Job> LevelApplier::planJobs() {
@@ -63,9 +66,11 @@ std::vector<LevelApplier::Job> LevelApplier::planJobs() {
     std::vector<Job> jobs;
     for (const std::uint32_t node : model.depthFirst()) {
         if (!make[node]) continue;
-        Job job{node, model.sourcesOf(node, stage_.level), std::numeric_limits<std::uint32_t>::max(), 0, 0};
+        Job job{node, model.sourcesOf(node, stage_.level), std::numeric_limits<std::uint32_t>::max(), 0, 0,
+                0};
         for (const EntrySource& source : job.sources) {
             job.triangles += source.entry.triangles;
+            job.vertices += source.entry.vertices;
             if (source.held) continue;
             const std::uint32_t first = source.entry.firstPage, last = first + source.entry.pageCount - 1;
             job.firstPage = std::min(job.firstPage, stage_.places.at(first));
@@ -169,6 +174,14 @@ void LevelApplier::encodeMorph(std::uint32_t index) {
     }
 }
 
+// With a bound of the error for what vanishes, too.
+void LevelApplier::startEntry(const Job& job) {
+    LevelRecord entry{};
+    entry.level = static_cast<std::uint8_t>(stage_.level);
+    for (const EntrySource& source : job.sources) entry.error = std::max(entry.error, source.entry.error);
+    tools_.model.entries[job.node].push_back(entry);
+}
+
 Result<void> LevelApplier::makeEntries(std::span<const Job> jobs) {
     std::vector<Slice> slices(jobs.size());
     const auto make = [&](std::size_t i) -> Result<void> {
@@ -176,12 +189,7 @@ Result<void> LevelApplier::makeEntries(std::span<const Job> jobs) {
         return {};
     };
     const auto add = [&](std::size_t i) -> Result<void> {
-        LevelRecord entry{};
-        entry.level = static_cast<std::uint8_t>(stage_.level);
-        // A bound for what has vanished, too.
-        for (const EntrySource& source : jobs[i].sources)
-            entry.error = std::max(entry.error, source.entry.error);
-        tools_.model.entries[jobs[i].node].push_back(entry);
+        startEntry(jobs[i]);
         packer_.add(std::move(slices[i]));
         return {};
     };
@@ -191,35 +199,110 @@ Result<void> LevelApplier::makeEntries(std::span<const Job> jobs) {
 Result<Slice> LevelApplier::makeSlice(const Job& job) {
     std::vector<LevelSource> sources;
     std::vector<std::shared_ptr<const SourcePage>> held;
-    for (const EntrySource& source : job.sources) {
-        const LevelRecord& entry = source.entry;
-        for (std::uint32_t number = entry.firstPage; number < entry.firstPage + entry.pageCount; ++number) {
-            LevelSource part{nullptr, nullptr, 0, 0, source.way, source.wayLevels};
-            if (source.held) {
-                const PageRecord& record = stage_.pages[stage_.places.at(number)].record;
-                ASSIGN_OR_RETURN(std::shared_ptr<const SourcePage> page, tools_.store.get(number, record));
-                part.page = held.emplace_back(std::move(page)).get();
-            } else {
-                const Loaded& loaded = loaded_[stage_.places.at(number) - firstLoaded_];
-                part.page = loaded.page.get();
-                part.targets = &loaded.targets;
-            }
-            part.firstRange = entry.pageCount == 1 ? entry.firstRange : 0u;
-            part.rangeCount = entry.pageCount == 1 ? entry.rangeCount
-                                                   : static_cast<std::uint32_t>(part.page->ranges.size());
-            sources.push_back(part);
-        }
+    for (const JobPage& page : pagesOf(job)) {
+        ASSIGN_OR_RETURN(sources.emplace_back(), sourceOf(page, held.emplace_back()));
     }
-    const LevelModel& model = tools_.model;
-    const unsigned depth = model.depth(job.node);
-    Slice slice = makeLevelSlice(tools_.format, model.lattice, sources, stage_.limits.error,
-                                 stage_.level + kRangeLevels - depth);
-    slice.node = job.node;
-    slice.edgeLog2 = model.lattice.rootCellLog2 - depth;
+    Slice slice =
+        makeLevelSlice(tools_.format, tools_.model.lattice, sources, stage_.limits.error, leastLevels(job));
+    place(slice, job);
     return slice;
 }
 
-Result<void> LevelApplier::writePages() {
+// Goes over its pages once, however many they are. `needed`: the first page that later jobs need.
+Result<void> LevelApplier::makeLargeEntry(const Job& job, std::uint32_t needed) {
+    const std::vector<JobPage> pages = pagesOf(job);
+    // The first page that the job needs from here on.
+    std::vector<std::uint32_t> first(pages.size() + 1, needed);
+    const auto placeOf = [&](std::size_t i) { return stage_.places.at(pages[i].number); };
+    for (std::size_t i = pages.size(); i-- > 0;)
+        first[i] = pages[i].held ? first[i + 1] : std::min(first[i + 1], placeOf(i));
+    LargeEntry entry(tools_.spill, tools_.format);
+    std::vector<SourceImage> images(pages.size());
+    const auto make = [&](std::size_t i) -> Result<void> {
+        std::shared_ptr<const SourcePage> held;
+        ASSIGN_OR_RETURN(const LevelSource source, sourceOf(pages[i], held));
+        RangeImages ranges(tools_.format, tools_.model.lattice, stage_.limits.error);
+        images[i] = imageOf(source, ranges);
+        return {};
+    };
+    const auto add = [&](std::size_t i) { return entry.add(std::exchange(images[i], {})); };
+    for (std::size_t begin = 0, end = 0; begin < pages.size(); begin = end) {
+        std::uint64_t vertices = 0;
+        std::uint32_t upTo = 0;
+        for (; end < pages.size() && vertices <= 2 * tools_.sizes.chunkTriangles; ++end) {
+            vertices += stage_.pages[placeOf(end)].record.vertexCount;
+            if (!pages[end].held) upTo = std::max(upTo, placeOf(end) + 1);
+        }
+        RETURN_IF_ERROR(loadUpTo(upTo));
+        RETURN_IF_ERROR(orderedFor(tools_.arena, begin, end, make, add));
+        release(first[end]);
+    }
+    RETURN_IF_ERROR(entry.finish(packer_.mostTriangles(), leastLevels(job)));
+    return writeLargeEntry(job, entry);
+}
+
+Result<void> LevelApplier::writeLargeEntry(const Job& job, LargeEntry& entry) {
+    startEntry(job);
+    if (entry.pages() == 1) {  // little is left of it
+        ASSIGN_OR_RETURN(Slice slice, entry.next());
+        place(slice, job);
+        packer_.add(std::move(slice));
+        return {};
+    }
+    packer_.finish();
+    RETURN_IF_ERROR(writePages(packer_.take()));
+    const std::size_t atOnce = 4 * static_cast<std::size_t>(tools_.arena.max_concurrency());
+    for (std::size_t left = entry.pages(); left > 0;) {
+        std::vector<PageJob> pages;
+        for (; pages.size() < atOnce && left > 0; --left) {
+            ASSIGN_OR_RETURN(Slice slice, entry.next());
+            place(slice, job);
+            pages.emplace_back().slices.push_back(std::move(slice));
+        }
+        RETURN_IF_ERROR(writePages(std::move(pages)));
+    }
+    return {};
+}
+
+std::vector<LevelApplier::JobPage> LevelApplier::pagesOf(const Job& job) const {
+    std::vector<JobPage> pages;
+    for (const EntrySource& source : job.sources) {
+        const LevelRecord& entry = source.entry;
+        for (std::uint32_t number = entry.firstPage; number < entry.firstPage + entry.pageCount; ++number) {
+            const bool shared = entry.pageCount == 1;
+            pages.push_back({number, shared ? entry.firstRange : 0u,
+                             shared ? entry.rangeCount : tools_.writer.records()[number].rangeCount,
+                             source.held, source.way, source.wayLevels});
+        }
+    }
+    return pages;
+}
+
+// `held` keeps a page that is not among those loaded.
+Result<LevelSource> LevelApplier::sourceOf(const JobPage& page, std::shared_ptr<const SourcePage>& held) {
+    LevelSource source{nullptr, nullptr, page.firstRange, page.rangeCount, page.way, page.wayLevels};
+    const std::uint32_t place = stage_.places.at(page.number);
+    if (page.held) {
+        ASSIGN_OR_RETURN(held, tools_.store.get(page.number, stage_.pages[place].record));
+        source.page = held.get();
+    } else {
+        const Loaded& loaded = loaded_[place - firstLoaded_];
+        source.page = loaded.page.get();
+        source.targets = &loaded.targets;
+    }
+    return source;
+}
+
+void LevelApplier::place(Slice& slice, const Job& job) const {
+    slice.node = job.node;
+    slice.edgeLog2 = tools_.model.lattice.rootCellLog2 - tools_.model.depth(job.node);
+}
+
+unsigned LevelApplier::leastLevels(const Job& job) const {
+    return stage_.level + kRangeLevels - tools_.model.depth(job.node);
+}
+
+Result<void> LevelApplier::writePages(std::vector<PageJob> pages) {
     LevelModel& model = tools_.model;
     const auto add = [&](const NodeRanges& ranges) -> LevelRecord& {
         addBox(model.nodes[ranges.node], model.hasWhole(ranges.node, stage_.level), ranges.box);
@@ -228,7 +311,7 @@ Result<void> LevelApplier::writePages() {
             std::max(entry.error, static_cast<float>(ranges.error) * (stage_.limits.error / 255.0f));
         return entry;
     };
-    return tools_.writer.write(packer_.take(), add, tools_.arena);
+    return tools_.writer.write(std::move(pages), add, tools_.arena);
 }
 
 // Pages before `end` are not needed any more.

@@ -10,7 +10,9 @@
 
 #include "preprocess/build/packer.hpp"
 #include "preprocess/build/page_writer.hpp"
+#include "preprocess/levels/large_entry.hpp"
 #include "preprocess/levels/level_slice.hpp"
+#include "preprocess/levels/levels.hpp"
 #include "preprocess/levels/model.hpp"
 #include "preprocess/levels/old_targets.hpp"
 #include "preprocess/levels/stage.hpp"
@@ -23,9 +25,11 @@ struct LevelTools {
     LevelModel& model;
     RecordFormat format;  // of triangles with errors
     std::uint32_t leafTriangles;
+    LevelSizes sizes;
     const OldTree& old;
     PageStore& store;
     PageWriter& writer;
+    ChunkFile& spill;
     tbb::task_arena& arena;
 };
 
@@ -51,7 +55,14 @@ class LevelApplier {
         std::uint32_t node;
         std::vector<EntrySource> sources;
         std::uint32_t firstPage, lastPage;  // the stage's pages among those that it needs lie in here
-        std::uint64_t triangles;            // of the sources
+        std::uint64_t triangles, vertices;  // of the sources
+    };
+    // A page of a source.
+    struct JobPage {
+        std::uint32_t number, firstRange, rangeCount;
+        bool held;
+        std::uint64_t way;
+        unsigned wayLevels;
     };
 
     std::vector<Job> planJobs();
@@ -60,9 +71,16 @@ class LevelApplier {
     Result<void> findTargets(std::uint32_t index);
     void encodeMorph(std::uint32_t index);
     Result<void> writeMorph(std::uint32_t index);
+    void startEntry(const Job& job);
     Result<void> makeEntries(std::span<const Job> jobs);
     Result<Slice> makeSlice(const Job& job);
-    Result<void> writePages();
+    Result<void> makeLargeEntry(const Job& job, std::uint32_t needed);
+    Result<void> writeLargeEntry(const Job& job, LargeEntry& entry);
+    std::vector<JobPage> pagesOf(const Job& job) const;
+    Result<LevelSource> sourceOf(const JobPage& page, std::shared_ptr<const SourcePage>& held);
+    void place(Slice& slice, const Job& job) const;
+    unsigned leastLevels(const Job& job) const;
+    Result<void> writePages(std::vector<PageJob> pages);
     void release(std::uint32_t end);
 
     LevelTools& tools_;

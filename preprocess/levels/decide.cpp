@@ -30,29 +30,50 @@ class CellJob {
         }
     }
 
-    Result<CellDecision> run(std::span<const std::uint32_t> touching, PageStore& store) {
+    // Adds what becomes of the vertices in the cell; false when it has too many triangles.
+    Result<bool> run(std::span<const std::uint32_t> touching, PageStore& store, std::size_t mostTriangles,
+                     CellDecision& decision) {
         for (const std::uint32_t index : touching) {
             if (!stage_.pages[index].held) RETURN_IF_ERROR(gather(index, store));
+            if (mesh_.triangles.size() > mostTriangles) return false;
         }
-        CellDecision decision;
-        if (mesh_.triangles.empty()) return decision;
+        if (mesh_.triangles.empty()) return true;
         for (const std::uint32_t index : touching) {
             if (stage_.pages[index].held && nearFree(index, touching)) RETURN_IF_ERROR(hold(index, store));
         }
         const std::vector<float> before = mesh_.errors;
         const CollapseMap map = collapse(mesh_, stage_.limits);
-        for (const Gathered& page : gathered_) {
-            tell(page, map, before, decision.targets);
-            ASSIGN_OR_RETURN(const bool moved, hasMoved(page, map, store));
-            if (moved) decision.moved.push_back(page.index);
-        }
-        return decision;
+        for (const Gathered& page : gathered_) tell(page, map, before, decision.targets);
+        const auto imageOf = [&](const CellPoint& position) {
+            const std::uint32_t point = points_.find(position);
+            return point == kNoNumber ? position : points_[map.points[point]];
+        };
+        RETURN_IF_ERROR(findMoved(touching, store, imageOf, decision));
+        return true;
+    }
+
+    // Whether halves would have vertices that may move, and not only triangles that reach out of them.
+    bool isMostlyWhole() const { return 2 * whole_ > mesh_.triangles.size(); }
+
+    // All of them stay.
+    Result<void> stay(std::span<const std::uint32_t> touching, PageStore& store, CellDecision& decision) {
+        return findMoved(
+            touching, store, [](const CellPoint& p) { return p; }, decision);
     }
 
   private:
+    // A page's vertices in the cell.
     struct Gathered {
+        struct Vertex {
+            std::uint32_t vertex, point, wedge;
+        };
         std::uint32_t index;
-        std::shared_ptr<const SourcePage> page;
+        std::vector<Vertex> vertices;
+    };
+    // A page that is being gathered.
+    struct Page {
+        const StagePage& stage;
+        const SourcePage& source;
         std::vector<std::uint32_t> wedges,
             points;                        // by vertex; kNoNumber when no triangle in the cell uses it
         std::vector<std::uint8_t> errors;  // by vertex, as in Stage::errors
@@ -69,25 +90,31 @@ class CellJob {
     }
 
     Result<void> gather(std::uint32_t index, PageStore& store) {
-        const StagePage& source = stage_.pages[index];
-        ASSIGN_OR_RETURN(std::shared_ptr<const SourcePage> page, store.get(source.number, source.record));
-        Gathered gathered{index, page, std::vector<std::uint32_t>(page->positions.size(), kNoNumber), {}, {}};
-        gathered.points.assign(page->positions.size(), kNoNumber);
-        ASSIGN_OR_RETURN(gathered.errors, stage_.errors->of(source.number));
-        std::vector<std::uint8_t> inside(page->positions.size());
-        for (std::size_t v = 0; v < inside.size(); ++v)
-            inside[v] = cell_.contains(page->positions[v]) ? 1 : 0;
-        std::vector<std::uint32_t> around(page->positions.size());
-        for (const Range& range : page->ranges) {
-            if (outside(*page, range)) continue;
+        const StagePage& stagePage = stage_.pages[index];
+        ASSIGN_OR_RETURN(const std::shared_ptr<const SourcePage> source,
+                         store.get(stagePage.number, stagePage.record));
+        const std::size_t vertices = source->positions.size();
+        const std::vector<std::uint32_t> none(vertices, kNoNumber);
+        Page page{stagePage, *source, none, none, {}};
+        ASSIGN_OR_RETURN(page.errors, stage_.errors->of(stagePage.number));
+        std::vector<std::uint8_t> inside(vertices);
+        for (std::size_t v = 0; v < vertices; ++v) inside[v] = cell_.contains(source->positions[v]) ? 1 : 0;
+        std::vector<std::uint32_t> around(vertices);
+        for (const Range& range : source->ranges) {
+            if (outside(*source, range)) continue;
             for (std::uint32_t i = range.firstIndex; i < range.firstIndex + range.indexCount; i += 3) {
-                const std::uint16_t* corner = &page->indices[i];
+                const std::uint16_t* corner = &source->indices[i];
                 const int in = inside[corner[0]] + inside[corner[1]] + inside[corner[2]];
                 if (in == 1 && isTooMuch(around, corner, inside)) continue;
-                if (in > 0) addTriangle(gathered, corner, in == 3);
+                if (in > 0) addTriangle(page, corner, in == 3);
             }
         }
-        gathered_.push_back(std::move(gathered));
+        Gathered gathered{index, {}};
+        for (std::uint32_t v = 0; v < vertices; ++v) {
+            if (inside[v] != 0 && page.points[v] != kNoNumber)
+                gathered.vertices.push_back({v, page.points[v], page.wedges[v]});
+        }
+        if (!gathered.vertices.empty()) gathered_.push_back(std::move(gathered));
         return {};
     }
 
@@ -100,7 +127,7 @@ class CellJob {
         return ++around[vertex] > kMostAround;
     }
 
-    void addTriangle(Gathered& from, const std::uint16_t* corner, bool whole) {
+    void addTriangle(Page& from, const std::uint16_t* corner, bool whole) {
         std::array<std::uint32_t, 3> points{}, wedges{};
         for (std::size_t c = 0; c < 3; ++c) {
             if (from.points[corner[c]] == kNoNumber) addVertex(from, corner[c]);
@@ -109,14 +136,15 @@ class CellJob {
             if (!whole) mesh_.held[points[c]] = 1;
         }
         mesh_.triangles.push_back(points);
-        if (hasAttributes(*from.page)) mesh_.wedges.push_back(wedges);
+        whole_ += whole ? 1 : 0;
+        if (hasAttributes(from.source)) mesh_.wedges.push_back(wedges);
     }
 
-    void addVertex(Gathered& from, std::uint16_t vertex) {
-        const SourcePage& page = *from.page;
+    void addVertex(Page& from, std::uint16_t vertex) {
+        const SourcePage& page = from.source;
         const auto [point, isNew] = points_.add(page.positions[vertex]);
         const float error = from.errors.empty()
-                                ? stage_.pages[from.index].error
+                                ? from.stage.error
                                 : static_cast<float>(from.errors[vertex]) * (stage_.errorUnit / 255.0f);
         if (isNew) {
             const CellPoint& p = page.positions[vertex];
@@ -167,53 +195,87 @@ class CellJob {
     // What has become of a page's vertices in the cell.
     void tell(const Gathered& from, const CollapseMap& map, const std::vector<float>& before,
               std::vector<VertexTarget>& targets) const {
-        const SourcePage& page = *from.page;
-        for (std::uint32_t v = 0; v < from.points.size(); ++v) {
-            const std::uint32_t point = from.points[v];
-            if (point == kNoNumber || !cell_.contains(page.positions[v])) continue;
+        for (const auto& [vertex, point, wedge] : from.vertices) {
             const std::uint32_t image = map.points[point];
-            VertexTarget target{from.index, v, mesh_.errors[image], 0, 0, points_[image]};
+            VertexTarget target{from.index, vertex, mesh_.errors[image], 0, 0, points_[image]};
             bool changed = image != point || mesh_.errors[image] != before[point];
-            if (hasAttributes(page)) {
-                const Wedge& wedge = wedges_[map.wedges[from.wedges[v]]];
-                target.color = wedge.color;
-                target.normal = wedge.normal;
-                changed = changed || map.wedges[from.wedges[v]] != from.wedges[v];
+            if (wedge != kNoNumber) {
+                const std::uint32_t imageWedge = map.wedges[wedge];
+                target.color = wedges_[imageWedge].color;
+                target.normal = wedges_[imageWedge].normal;
+                changed = changed || imageWedge != wedge;
             }
             if (changed) targets.push_back(target);
         }
     }
 
-    // Whether vertices in the cell of a page that is not fresh go elsewhere than its morph block says.
-    Result<bool> hasMoved(const Gathered& from, const CollapseMap& map, PageStore& store) const {
-        const StagePage& source = stage_.pages[from.index];
-        if (source.fresh) return false;
-        const bool isInside = std::ranges::any_of(
-            from.page->positions, [&](const CellPoint& position) { return cell_.contains(position); });
-        if (!isInside || source.record.morphBytes == 0) return isInside;
-        ASSIGN_OR_RETURN(const std::vector<CellPoint> before, store.targets(source.record, *from.page));
-        for (std::size_t v = 0; v < before.size(); ++v) {
-            const std::uint32_t point = from.points[v];
-            if (point == kNoNumber || !cell_.contains(from.page->positions[v])) continue;
-            if (points_[map.points[point]] != before[v]) return true;
+    // The pages, not fresh, with vertices in the cell that go elsewhere than their morph blocks say.
+    template <class ImageOf>
+    Result<void> findMoved(std::span<const std::uint32_t> touching, PageStore& store, const ImageOf& imageOf,
+                           CellDecision& decision) const {
+        for (const std::uint32_t index : touching) {
+            const StagePage& page = stage_.pages[index];
+            if (page.held || page.fresh) continue;
+            ASSIGN_OR_RETURN(const std::shared_ptr<const SourcePage> source,
+                             store.get(page.number, page.record));
+            const auto inside = [&](const CellPoint& p) { return cell_.contains(p); };
+            const std::vector<CellPoint>& positions = source->positions;
+            if (std::ranges::none_of(positions, inside)) continue;
+            std::vector<CellPoint> before;
+            if (page.record.morphBytes > 0) {
+                ASSIGN_OR_RETURN(before, store.targets(page.record, *source));
+            }
+            bool moved = before.empty();
+            for (std::size_t v = 0; v < before.size() && !moved; ++v)
+                moved = inside(positions[v]) && imageOf(positions[v]) != before[v];
+            if (moved) decision.moved.push_back(index);
         }
-        return false;
+        return {};
     }
 
     const SpaceCell& cell_;
     const Stage& stage_;
     CellPoint centre_{0};
     CollapseMesh mesh_;
+    std::size_t whole_ = 0;  // triangles with all corners in the cell
     Numbers<CellPoint, PointHash> points_;
     Numbers<Wedge, WedgeHash> wedges_;
     std::vector<Gathered> gathered_;
 };
 
+// Adds to `decision`. Models differ in how many triangles are in a cell: some are as dense as no
+// simplification leaves them, and long triangles lie in nodes that are far larger than their ends.
+Result<void> decide(const SpaceCell& cell, const Stage& stage, std::span<const std::uint32_t> touching,
+                    PageStore& store, std::size_t mostTriangles, CellDecision& decision) {
+    const CellPoint edges = cell.high - cell.low;
+    const glm::length_t axis = edges.x >= edges.y && edges.x >= edges.z ? 0 : edges.y >= edges.z ? 1 : 2;
+    {
+        CellJob job(cell, stage);
+        ASSIGN_OR_RETURN(const bool done, job.run(touching, store, mostTriangles, decision));
+        if (done) return {};
+        const bool isPoint = static_cast<float>(edges[axis]) <= stage.limits.error;
+        if (isPoint || !job.isMostlyWhole()) return job.stay(touching, store, decision);
+    }  // its memory is free for the halves
+    SpaceCell low = cell, high = cell;
+    low.high[axis] = high.low[axis] = cell.low[axis] + edges[axis] / 2;
+    for (const SpaceCell& half : {low, high}) {
+        std::vector<std::uint32_t> pages;
+        std::ranges::copy_if(touching, std::back_inserter(pages), [&](std::uint32_t index) {
+            return half.meets(stage.pages[index].low, stage.pages[index].high);
+        });
+        RETURN_IF_ERROR(decide(half, stage, pages, store, mostTriangles, decision));
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<CellDecision> decideCell(const SpaceCell& cell, const Stage& stage,
-                                std::span<const std::uint32_t> touching, PageStore& store) {
-    return CellJob(cell, stage).run(touching, store);
+                                std::span<const std::uint32_t> touching, PageStore& store,
+                                std::size_t mostTriangles) {
+    CellDecision decision;
+    RETURN_IF_ERROR(decide(cell, stage, touching, store, mostTriangles, decision));
+    return decision;
 }
 
 }  // namespace iwalk

@@ -35,8 +35,9 @@ class Pass {
         std::vector<bool> moved(stage_.pages.size(), false);
         std::size_t decided = 0;
         const auto work = [&](std::size_t i) -> Result<void> {
-            ASSIGN_OR_RETURN(const CellDecision decision,
-                             decideCell(cells[i], stage_, touching(cells[i]), tools_.store));
+            ASSIGN_OR_RETURN(
+                const CellDecision decision,
+                decideCell(cells[i], stage_, touching(cells[i]), tools_.store, tools_.sizes.cellTriangles));
             const std::lock_guard lock(mutex);
             done(static_cast<double>(++decided) / static_cast<double>(cells.size()));
             for (const std::uint32_t page : decision.moved) moved[page] = true;
@@ -73,7 +74,7 @@ Result<void> makeLevels(LevelModel& model, const RecordFormat& format, const Lev
     progress.phase("finding opacities");
     const auto done = [&](double part) { progress.done(part); };
     RETURN_IF_ERROR(findOpacities(model, writer.records(), old, store, arena, done));
-    LevelTools tools{model, format, options.leafTriangles, old, store, writer, arena};
+    LevelTools tools{model, format, options.leafTriangles, options.sizes, old, store, writer, spill, arena};
     const int coarsest = static_cast<int>(coarsestLevel(model.lattice.rootCellLog2));
     for (int level = model.finestLevel(); level >= coarsest; --level) {
         RETURN_IF_ERROR(writer.flush());

@@ -10,9 +10,19 @@
 
 namespace iwalk {
 
+// How much is in memory at once. What comes out depends on them, so they are the same in every build.
+struct LevelSizes {
+    // Triangles that entries are made of; so many vertices are twice as many. An entry made of more goes
+    // through a temporary file.
+    std::uint64_t chunkTriangles = 200'000;
+    // Triangles that decide where vertices go; a cell with more is decided in halves.
+    std::size_t cellTriangles = 131'072;
+};
+
 struct LevelOptions {
     std::uint32_t leafTriangles = 0;
     unsigned threads = 1;
+    LevelSizes sizes{};
 };
 
 // Completes a model whose full resolution is in pages. Leaves get their opacities. Then the levels are made:

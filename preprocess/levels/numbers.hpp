@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -40,6 +41,10 @@ class Numbers {
     std::uint32_t find(const Key& key) const { return table_[slotOf(key)]; }
     const Key& operator[](std::uint32_t number) const { return keys_[number]; }
     std::size_t size() const { return keys_.size(); }
+    void clear() {
+        std::ranges::fill(table_, kNoNumber);
+        keys_.clear();
+    }
 
   private:
     // The key's, or the free one where it would go.

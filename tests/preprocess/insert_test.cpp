@@ -250,6 +250,17 @@ TEST_F(InsertTest, BytesDoNotDependOnThreadsOrMemory) {
     EXPECT_TRUE(bytes == bytesOf("little", {.memoryBytes = 64u << 20, .threads = 2}, std::move(little)));
 }
 
+// Into levels that were decided by whole cells and made in memory.
+TEST_F(InsertTest, InHalvesOfCellsAndThroughTheFile) {
+    const FakeInput a = together(makeSoup(10'000, 1e-4, 2, 1, true), makeSoup(2000, 8, 12, 4, true));
+    const FakeInput b = placed(makeSoup(3000, 1e-4, 2, 2, true), 1, {3, 1, 0});
+    build(a, "d", 300);
+    BuildParts parts;
+    parts.levels = {.chunkTriangles = 1, .cellTriangles = 500};
+    insert(b, "d", {}, std::move(parts));
+    expectAsBuilt("d", together(a, b), 300);
+}
+
 TEST_F(InsertTest, RootsThatPagesCannotSpan) {
     const FakeInput a = makeSoup(5000, 1e-4, 2, 1, true);
     build(a, "d", 200);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "common/dataset/hierarchy.hpp"
 #include "common/file.hpp"
@@ -55,6 +56,28 @@ TEST_P(LevelBytesTest, DoNotDependOnBatches) {
     parts.batchTriangles = 3001;
     parts.chunkBytes = 4096;
     expectSame(first, build("small-batches", 64, 1, parts));
+}
+
+// Through a temporary file, every one of them: all but the places in the file is the same.
+TEST_P(LevelBytesTest, LargeEntriesAreLikeOthers) {
+    const std::string usual = build("usual", 512, 2);
+    BuildParts parts;
+    parts.levels.chunkTriangles = 1;
+    const std::string large = build("large", 512, 2, parts);
+    const Hierarchy a = loadHierarchy(usual, loadManifest(usual).value()).value();
+    const Hierarchy b = loadHierarchy(large, loadManifest(large).value()).value();
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+    };
+    EXPECT_TRUE(same(a.nodes, b.nodes));
+    EXPECT_TRUE(same(a.entries, b.entries));
+    ASSERT_EQ(a.pages.size(), b.pages.size());
+    const std::string inA = bytesOf(usual, "pages-1.bin"), inB = bytesOf(large, "pages-1.bin");
+    for (std::size_t i = 0; i < a.pages.size(); ++i) {
+        const PageRecord &x = a.pages[i], &y = b.pages[i];
+        EXPECT_EQ(inA.substr(x.offset, x.bytes), inB.substr(y.offset, y.bytes)) << i;
+        EXPECT_EQ(inA.substr(x.morphOffset, x.morphBytes), inB.substr(y.morphOffset, y.morphBytes)) << i;
+    }
 }
 
 TEST_P(LevelBytesTest, VerifyFindsNothing) {

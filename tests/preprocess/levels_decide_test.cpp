@@ -82,7 +82,7 @@ TEST_F(DecideTest, AHubStaysAndItsCrowdTakesNoMemory) {
     ASSERT_GE(atHub, 2u);
 
     testing::resetLargestAllocation();
-    const auto decision = decideCell(cell, stage_, touching_, *store_);
+    const auto decision = decideCell(cell, stage_, touching_, *store_, 131'072);
     const std::size_t largest = testing::largestAllocation();
     ASSERT_TRUE(decision.ok()) << decision.error().message;
     // All of the crowd's points and triangles would take more than 2 MiB each.

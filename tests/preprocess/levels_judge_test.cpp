@@ -14,8 +14,8 @@ using levels::DatasetPages;
 
 class LevelJudgeTest : public testing::Test {
   protected:
-    DatasetPages build(const FakeInput& input, std::uint32_t leafTriangles) {
-        const auto manifest = buildFrom(input, directory_.path("d"), {.leafTriangles = leafTriangles});
+    DatasetPages build(const FakeInput& input, std::uint32_t leafTriangles, const BuildParts& parts = {}) {
+        const auto manifest = buildFrom(input, directory_.path("d"), {.leafTriangles = leafTriangles}, parts);
         EXPECT_TRUE(manifest.ok()) << manifest.error().message;
         auto pages = DatasetPages::open(directory_.path("d"));
         EXPECT_TRUE(pages.ok()) << pages.error().message;
@@ -77,6 +77,19 @@ TEST_F(LevelJudgeTest, ACrowdAroundAVertexIsAsFarAsStated) {
     const DatasetPages pages = build(fan(100'000), 1000);
     ASSERT_GE(pages.manifest().levels.size(), 2u);
     EXPECT_LE(worst(pages, 200), 1.0);
+    NoProgress progress;
+    EXPECT_EQ(verifyDataset(directory_.path("d"), progress).value().problems, std::vector<std::string>{});
+}
+
+// Cells that have too many triangles even for their halves.
+TEST_F(LevelJudgeTest, WhatIsDecidedInHalvesFits) {
+    BuildParts parts;
+    parts.levels.cellTriangles = 2000;
+    const DatasetPages pages = build(noisySphere(70), 1000, parts);
+    const levels::CrackReport report = cracks(pages);
+    EXPECT_EQ(report.full.openEdges + report.openEdges + report.looseBoxes, 0u);
+    EXPECT_LT(report.leastTriangles, report.full.triangles / 4);
+    EXPECT_LE(worst(pages), 1.0);
     NoProgress progress;
     EXPECT_EQ(verifyDataset(directory_.path("d"), progress).value().problems, std::vector<std::string>{});
 }
