@@ -35,7 +35,7 @@ class CellJob {
                      CellDecision& decision) {
         for (const std::uint32_t index : touching) {
             if (!stage_.pages[index].held) RETURN_IF_ERROR(gather(index, store));
-            if (mesh_.triangles.size() > mostTriangles) return false;
+            if (std::max(mesh_.triangles.size(), mesh_.points.size()) > mostTriangles) return false;
         }
         if (mesh_.triangles.empty()) return true;
         for (const std::uint32_t index : touching) {

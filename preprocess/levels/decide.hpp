@@ -25,8 +25,8 @@ struct CellDecision {
 
 // Decides where the vertices in `cell` go. `touching`: the stage pages whose boxes meet the cell. A vertex
 // that triangles with vertices elsewhere use stays: what other cells see of it does not change. So does one
-// that pages held use. A cell with more than `mostTriangles` is decided in halves, or, when most of them
-// reach out of it, not at all.
+// that pages held use. A cell with more than `mostTriangles`, or so many points, is decided in halves, or,
+// when most of them reach out of it, not at all.
 Result<CellDecision> decideCell(const SpaceCell& cell, const Stage& stage,
                                 std::span<const std::uint32_t> touching, PageStore& store,
                                 std::size_t mostTriangles);

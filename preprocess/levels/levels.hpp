@@ -15,7 +15,8 @@ struct LevelSizes {
     // Triangles that entries are made of; so many vertices are twice as many. An entry made of more goes
     // through a temporary file.
     std::uint64_t chunkTriangles = 200'000;
-    // Triangles that decide where vertices go; a cell with more is decided in halves.
+    // Triangles that decide where vertices go, or these, where they are more; a larger cell is decided in
+    // halves.
     std::size_t cellTriangles = 131'072;
 };
 

@@ -54,6 +54,7 @@ Result<void> TargetBins::finish() {
 Result<void> TargetBins::load(std::size_t bin) {
     loaded_ = bin;
     targets_.clear();
+    targets_.reserve(static_cast<std::size_t>(bins_[bin].count));
     BinReader reader(file_, std::move(bins_[bin]), kWords);
     std::vector<std::uint32_t> words;
     while (reader.left() > 0) {
