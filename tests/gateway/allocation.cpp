@@ -21,9 +21,12 @@ void resetLargestAllocation() {
 
 }  // namespace iwalk::testing
 
-void* operator new(std::size_t bytes) {
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
     largest = std::max(largest, bytes);
-    void* place = std::malloc(bytes);
+    return std::malloc(bytes);
+}
+void* operator new(std::size_t bytes) {
+    void* place = operator new(bytes, std::nothrow);
     if (!place) throw std::bad_alloc();
     return place;
 }
