@@ -163,12 +163,15 @@ expect_ended() {
     rm ended
 }
 
-# With a disk for just a little more each time.
-fill_disks() {
-    local kilobytes inodes=5
-    kilobytes=$(($(du -sk whole | cut -f1) + 20))
+# fill_room KILOBYTES FILE...: with a disk for just a little more each time; it is full at these files.
+fill_room() {
+    local kilobytes=$1
     while ! run_on_disk "size=${kilobytes}k"; do kilobytes=$((kilobytes * 108 / 100)); done
-    expect_ended triangles pages-2.bin
+    expect_ended "${@:2}"
+}
+fill_disks() {
+    local inodes=5
+    fill_room $(($(du -sk whole | cut -f1) + 20)) triangles pages-2.bin
     # Each file and directory takes an inode, of which the old dataset has 5. The levels' temporary file, the hierarchy and
     # the new manifest have those of temporary files that are gone by then, as they have their room.
     while ! run_on_disk "nr_inodes=$inodes"; do inodes=$((inodes + 1)); done
@@ -180,4 +183,9 @@ fill_disks
 make_new() { "$preprocess" insert "$1" new.ply; }
 made_triangles=$both
 fill_disks
+# Levels that are not simplified go through the levels' temporary file.
+"$preprocess" generate hard-point --triangles 400000 -o point.ply >/dev/null 2>&1
+make_new() { "$preprocess" build point.ply -o "$1"; }
+made_triangles=400000
+fill_room 8000 triangles pages-2.bin targets
 finish
