@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <malloc.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -15,6 +16,7 @@ namespace {
 using namespace iwalk;
 
 constexpr int kSuccess = 0, kFailure = 1, kUsage = 2;
+constexpr int kLargeBlock = 4 << 20;  // bytes
 
 int report(const Result<void>& result) {
     if (result) return kSuccess;
@@ -229,6 +231,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
+        // Large blocks go back to the system when they are freed. By itself malloc soon keeps them, in
+        // pieces, so that memory depends on the order of blocks (50 or 70 MB for the same build).
+        ::mallopt(M_MMAP_THRESHOLD, kLargeBlock);
         // Standard output is for results.
         spdlog::set_default_logger(spdlog::stderr_logger_mt("iwalk-preprocess"));
         spdlog::set_pattern("%l: %v");
