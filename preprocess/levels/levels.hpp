@@ -10,13 +10,12 @@
 
 namespace iwalk {
 
-// How much is in memory at once. What comes out depends on them, so they are the same in every build.
+// How much is in memory at once. Datasets depend on it, so only tests choose other sizes.
 struct LevelSizes {
-    // Triangles that entries are made of; so many vertices are twice as many. An entry made of more goes
+    // Triangles that entries are made of, with at most twice as many vertices. An entry made of more goes
     // through a temporary file.
     std::uint64_t chunkTriangles = 200'000;
-    // Triangles that decide where vertices go, or these, where they are more; a larger cell is decided in
-    // halves.
+    // Triangles, and points, of a cell that is decided at once; a larger one is decided in halves.
     std::size_t cellTriangles = 131'072;
 };
 
